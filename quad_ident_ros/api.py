@@ -6,6 +6,7 @@ from quad_ident_ros.data.load import load as read
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.diagnose.result import Diagnosis
+from quad_ident_ros.effects.registry import titled
 from quad_ident_ros.errors import Cancelled, InputError
 from quad_ident_ros.flight.fly import fly_closed_loop as simulate
 from quad_ident_ros.flight.measure import SENSORS
@@ -19,5 +20,5 @@ from quad_ident_ros.vehicle_files.load import load_any_vehicle as load_vehicle
 __all__ = [
     'Cancelled', 'diagnose', 'Diagnosis', 'fit', 'Fit', 'fitted_vehicle', 'FlightRecord',
     'identify', 'Identification', 'InputError', 'load_vehicle', 'read', 'SENSORS', 'Settings',
-    'simulate', 'Vehicle', 'verdict_line', 'write_vehicle',
+    'simulate', 'titled', 'Vehicle', 'verdict_line', 'write_vehicle',
 ]

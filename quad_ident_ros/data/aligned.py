@@ -9,7 +9,7 @@ from scipy.interpolate import Akima1DInterpolator
 
 from quad_ident_ros.data.quality.clock import clock_offset, SEVERAL, velocity_offset
 from quad_ident_ros.data.quality.glitches import jumps
-from quad_ident_ros.data.record import EULER, QUATERNION
+from quad_ident_ros.data.record import EULER, FlightRecord, QUATERNION
 from quad_ident_ros.model.attitude import continuous
 
 STREAMS = {'pose': ('px', 'py', 'pz', *QUATERNION, *EULER), 'velocity': ('vx', 'vy', 'vz'),
@@ -20,7 +20,7 @@ GAP = 0.05          # s between two samples, or as many periods as below, from w
 PERIODS = 1.6       # is taken from between
 
 
-def aligned(record):
+def aligned(record: FlightRecord) -> tuple[FlightRecord, dict[str, float]]:
     """
     Return a flight record with states of one clock, and {stream: s that it was stamped late}.
 
@@ -47,7 +47,7 @@ def aligned(record):
                    columns={name: values[whole] for name, values in columns.items()}), late
 
 
-def lateness(record):
+def lateness(record: FlightRecord) -> dict[str, float]:
     """Return {stream: s} of the streams of a record that are stamped later than the first."""
     found = {'rate': clock_offset(record), 'velocity': velocity_offset(record)}
     known = {stream: (-one.offset, one.std) for stream, one in found.items() if one is not None}
@@ -66,7 +66,8 @@ def lateness(record):
             if offset - first > LEAST}
 
 
-def _moved(record, stream, names, offset):
+def _moved(record: FlightRecord, stream: str, names: list[str], offset: float
+           ) -> tuple[np.ndarray, np.ndarray]:
     """Return columns (N, k) at stamps that much later, and where they are known, (N,)."""
     t, values = record.t, record.stack(*names)
     good = ~jumps(record) if stream == 'pose' else np.ones(len(t), bool)    # they reach neighbours

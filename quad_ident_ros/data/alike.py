@@ -7,11 +7,15 @@ The place of the numbers in a message follows from its type and the lengths of t
 in it. Messages of a topic that have these bytes in common are one table of bytes.
 """
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass
+from typing import Any, TypeAlias
 
 import numpy as np
 from rosbags.interfaces import Nodetype
+from rosbags.typesys.store import Typestore
+
+from quad_ident_ros.data.message import Message
 
 MOST_MESSAGES, MOST_BYTES = 4096, 1 << 20   # that wait: enough to be fast, little memory
 _WORTH = 4          # messages in a row; fewer are no slower one by one
@@ -20,10 +24,10 @@ _NUMBERS = {'bool': '?', 'byte': 'u1', 'char': 'u1', 'octet': 'u1',
             **{f'{sign}int{8 * size}': f'{sign or "i"}{size}' for sign in ('', 'u')
                for size in (1, 2, 4, 8)}, 'float32': 'f4', 'float64': 'f8'}
 
-Fields = dict[str, tuple]
-"""Definitions of message types as rosbags has them: name -> (constants, fields)."""
+Field: TypeAlias = tuple[Nodetype, Any]
+"""What a field of a message is, as rosbags has it: its node, and of what."""
 
-Make = Callable[[np.ndarray], object]
+Make = Callable[[np.ndarray], Message]
 
 
 class Unlike(Exception):
@@ -49,7 +53,7 @@ class Layout:
         return (rows[:, self.places] == self.told).all(axis=1)
 
 
-def layout_of(data: bytes, message: object, store: object, *, ros1: bool = False,
+def layout_of(data: bytes, message: Message, store: Typestore, *, ros1: bool = False,
               fixed: Collection[str] = ()) -> Layout | None:
     """
     Return the Layout of a message, or None where it is not known.
@@ -69,21 +73,21 @@ def layout_of(data: bytes, message: object, store: object, *, ros1: bool = False
 class _Walk:
     """A walk through the bytes of a message, field by field."""
 
-    def __init__(self, data: bytes, store: object, ros1: bool):
+    def __init__(self, data: bytes, store: Typestore, ros1: bool) -> None:
         self._data, self._store, self._ros1 = data, store, ros1
         self._begin = 0 if ros1 else _ENCAPSULATION
         self._order = '<' if ros1 or data[1] else '>'
         self._at = self._begin
         self._told = list(range(self._begin))
 
-    def layout(self, message: object, fixed: frozenset[str]) -> Layout:
+    def layout(self, message: Message, fixed: frozenset[str]) -> Layout:
         """Return the Layout."""
         make = self._message(message.__msgtype__, message, fixed)
         places = np.array(self._told, int)
         return Layout(len(self._data), places,
                       np.frombuffer(self._data, np.uint8)[places], make)
 
-    def _message(self, kind: str, message: object, fixed: frozenset[str] = frozenset()) -> Make:
+    def _message(self, kind: str, message: Message, fixed: frozenset[str] = frozenset()) -> Make:
         definition = self._store.get_msgdef(kind)
         makes = []
         for name, field in definition.fields:
@@ -96,7 +100,7 @@ class _Walk:
             makes.append(make)
         return lambda rows: definition.cls(*(make(rows) for make in makes))
 
-    def _field(self, field: tuple, value: object) -> Make:
+    def _field(self, field: Field, value: Any) -> Make:
         node, what = field
         if node == Nodetype.NAME:
             return self._message(what, value)
@@ -167,7 +171,7 @@ class Waiting:
     Args: layout: of those that can be, or None; one: reads the bytes of a message.
     """
 
-    def __init__(self, layout: Layout | None, one: Callable[[bytes], object]):
+    def __init__(self, layout: Layout | None, one: Callable[[bytes], Message]) -> None:
         self.layout, self._one = layout, one
         self._stamps: list[int] = []
         self._data: list[bytes] = []
@@ -183,7 +187,7 @@ class Waiting:
         count = len(self._data)
         return count >= MOST_MESSAGES or count * len(data) >= MOST_BYTES
 
-    def taken(self):
+    def taken(self) -> Iterator[tuple[int | np.ndarray, Message]]:
         """
         Yield (time of receipt in ns, message) of those that wait, and empty the list.
 
@@ -194,6 +198,7 @@ class Waiting:
         if not data:
             return
         rows = np.frombuffer(b''.join(data), np.uint8).reshape(len(data), -1)
+        assert self.layout is not None      # what waits fits it
         alike = self.layout.alike(rows)
         edges = [0, *(np.flatnonzero(alike[1:] != alike[:-1]) + 1).tolist(), len(data)]
         for first, end in zip(edges[:-1], edges[1:], strict=True):

@@ -6,18 +6,21 @@ Flight records from the DataFlash logs of ArduPilot.
 Source: ArduPilot's log messages (LogStructure.h), parameters, and motor orders (AP_Motors).
 """
 
+from collections.abc import Sequence
 from pathlib import Path
 import re
+from typing import TypeGuard
 
 import numpy as np
 
 from quad_ident_ros.data import frames
 from quad_ident_ros.data.autopilot import known_names, outputs_stream, unit_quaternions
-from quad_ident_ros.data.dataflash import read_messages
+from quad_ident_ros.data.dataflash import Messages, read_messages
+from quad_ident_ros.data.mapping import Actuators, Mapping
 from quad_ident_ros.data.modes import modes_from
 from quad_ident_ros.data.motor_layouts import directions
 from quad_ident_ros.data.motor_order import about_motors
-from quad_ident_ros.data.readers.base import content_of
+from quad_ident_ros.data.readers.base import Content, content_of
 from quad_ident_ros.data.record import FlightRecord, QUATERNION
 from quad_ident_ros.data.streams import INTERPOLATED, join, SLOW, Stream
 from quad_ident_ros.data.thrust_curve import ardupilot_curve
@@ -37,14 +40,17 @@ _BUILDS = {1: 'Rover', 3: 'ArduPlane', 4: 'AntennaTracker', 7: 'ArduSub', 12: 'B
 _OTHERS = {'ArduPlane': 'ArduPlane', 'ArduRover': 'Rover', 'APM:Rover': 'Rover', 'Rover': 'Rover',
            'ArduSub': 'ArduSub', 'Blimp': 'Blimp', 'AntennaTracker': 'AntennaTracker',
            'APM:Plane': 'ArduPlane'}
-_HELICOPTERS = {6: 'a helicopter', 8: 'a single copter', 9: 'a coaxial copter',
-                11: 'a helicopter with two rotors', 13: 'a helicopter with four rotors'}
-_PLACES = {(1, 0): '1 right, 2 left, 3 front, 4 rear',
-           (1, 1): '1 front right, 2 rear left, 3 front left, 4 rear right'}
+_HELICOPTERS: dict[float | None, str] = {
+    6: 'a helicopter', 8: 'a single copter', 9: 'a coaxial copter',
+    11: 'a helicopter with two rotors', 13: 'a helicopter with four rotors'}
+_PLACES: dict[tuple[float | None, ...], str] = {
+    (1, 0): '1 right, 2 left, 3 front, 4 rear',
+    (1, 1): '1 front right, 2 rear left, 3 front left, 4 rear right'}
 """Where motors are, by FRAME_CLASS and FRAME_TYPE; quad plus and quad X."""
 
-_LAYOUTS = {(1, 0): 'quad +', (1, 1): 'quad x', (2, 0): 'hexa +', (2, 1): 'hexa x',
-            (3, 0): 'octo +', (3, 1): 'octo x', (4, 0): 'coaxial octo +', (4, 1): 'coaxial octo x'}
+_LAYOUTS: dict[tuple[float | None, ...], str] = {
+    (1, 0): 'quad +', (1, 1): 'quad x', (2, 0): 'hexa +', (2, 1): 'hexa x',
+    (3, 0): 'octo +', (3, 1): 'octo x', (4, 0): 'coaxial octo +', (4, 1): 'coaxial octo x'}
 
 _BOARD = re.compile(r'([\w-]+) ((?:[0-9A-F]{8} ?){3})')     # name, and serial number of its chip
 _MOTOR = re.compile(r'SERVO([1-9]|[12][0-9]|3[0-2])_FUNCTION')
@@ -53,7 +59,7 @@ _MAP = ('MOT_PWM_MIN', 'MOT_PWM_MAX', 'MOT_SPIN_ARM', 'MOT_SPIN_MIN', 'MOT_SPIN_
 _AXIS, _FLATTENING = 6378137.0, 1 / 298.257223563      # WGS 84
 
 
-def read_ardupilot(path, mapping=None):
+def read_ardupilot(path: str | Path, mapping: Mapping | None = None) -> FlightRecord:
     """
     Return the FlightRecord of a log of ArduCopter, in ENU and FLU.
 
@@ -75,12 +81,11 @@ def read_ardupilot(path, mapping=None):
     data = {name: _instance(path, name, found.get(name), mapping.instances.get(name))
             for name in ROLES if name != 'ESC'}
     notes = [f'{damaged} bytes of the log are not messages and are left out'] if damaged else []
-    streams = [_attitude(data), *_motion(data), _rate(data), _specific_force(data),
-               _battery(data)]
+    states = [_attitude(data), *_motion(data), _rate(data), _specific_force(data), _battery(data)]
     channels = _channels(parameters)
     outputs = _outputs(path, data['RCOU'], channels, mapping.actuators, notes)
     rotors = _rotors(found.get('ESC'), channels, notes)
-    streams = [stream for stream in [*streams, outputs, *rotors] if stream is not None]
+    streams = [stream for stream in [*states, outputs, *rotors] if stream is not None]
     if not any(set(stream.columns) - {'vbat'} for stream in streams):
         raise InputError(f'{path}: has none of the messages {", ".join(ROLES)}; set LOG_BITMASK '
                          'to log them')
@@ -94,12 +99,13 @@ def read_ardupilot(path, mapping=None):
                                      'modes': _modes(found.get('MODE'), start)})
 
 
-def _modes(messages, start_ns):
+def _modes(messages: Messages | None, start_ns: int) -> list[tuple[float, str]]:
     """Return the changes of the flight mode of a copter, as modes_from has them."""
     from pymavlink.mavutil import mode_mapping_acm
-    numbers = [] if messages is None else [
-        name for name in ('ModeNum', 'Mode') if name in messages.fields
-        and messages.rows[name].dtype.kind in 'iu']
+    if messages is None:
+        return []
+    numbers = [name for name in ('ModeNum', 'Mode') if name in messages.fields
+               and messages.rows[name].dtype.kind in 'iu']
     if not numbers or not _timed(messages):
         return []
     names = {number: name.lower().replace('_', ' ') for number, name in mode_mapping_acm.items()}
@@ -107,7 +113,7 @@ def _modes(messages, start_ns):
     return modes_from(stamps, messages.rows[numbers[0]], names, start_ns)
 
 
-def contents(path):
+def contents(path: str | Path) -> list[Content]:
     """Return the Content of each type of message, of each of its instances; errors as above."""
     found, _ = read_messages(path)
     stamps = {name: messages.rows['TimeUS'].astype(np.int64) * 1000
@@ -125,18 +131,19 @@ def contents(path):
     return listed
 
 
-def _timed(messages):
+def _timed(messages: Messages) -> bool:
     return 'TimeUS' in messages.fields and messages.rows['TimeUS'].dtype.kind in 'iu'
 
 
-def _instance_field(messages):
+def _instance_field(messages: Messages) -> str | None:
     """Return the field that numbers instances, or None; it comes right after the stamp."""
     name = messages.fields[1] if len(messages.fields) > 1 else None
     small = name in _INSTANCES and messages.rows[name].dtype in (np.uint8, np.int8)
     return name if small else None
 
 
-def _instance(path, name, messages, number):
+def _instance(path: Path, name: str, messages: Messages | None, number: int | None
+              ) -> Messages | None:
     """Return the messages of one instance, the first if none is named, or None."""
     field = None if messages is None else _instance_field(messages)
     there = [] if messages is None else [0] if field is None else sorted(
@@ -144,7 +151,7 @@ def _instance(path, name, messages, number):
     if number is not None and number not in there:
         raise InputError(f'{path}: instances: there is no {name} {number}; the log has: '
                          f'{", ".join(map(str, there)) or "none"}')
-    if not there:
+    if messages is None or not there:
         return None
     if not _timed(messages):
         raise InputError(f'{path}, message {name}: there is no stamp TimeUS; this is not a log of '
@@ -154,7 +161,7 @@ def _instance(path, name, messages, number):
     return messages
 
 
-def _parameters(found):
+def _parameters(found: dict[str, Messages]) -> dict[str, float]:
     """Return the last value of each parameter, name -> float."""
     messages = found.get('PARM')
     if messages is None or not _has(messages, 'Name', 'Value'):
@@ -162,14 +169,14 @@ def _parameters(found):
     return dict(zip(messages.texts('Name'), messages.values('Value').tolist(), strict=True))
 
 
-def _has(messages, *fields):
+def _has(messages: Messages | None, *fields: str) -> TypeGuard[Messages]:
     """Return whether there are messages with these fields, numerical but for texts."""
     return messages is not None and all(
         field in messages.fields and (messages.rows[field].dtype.kind in 'iuf'
                                       or field in ('Name', 'Message')) for field in fields)
 
 
-def _hardware(found):
+def _hardware(found: dict[str, Messages]) -> dict[str, str]:
     """Return what a log knows of the vehicle: its board and the serial number of that."""
     if not _has(found.get('MSG'), 'Message') or found['MSG'].rows['Message'].dtype.kind != 'S':
         return {}
@@ -177,7 +184,7 @@ def _hardware(found):
     return next(({'board': one[1], 'id': one[2]} for one in told), {})
 
 
-def _refuse_others(path, found, parameters):
+def _refuse_others(path: Path, found: dict[str, Messages], parameters: dict[str, float]) -> None:
     """Raise InputError for vehicles that are no multirotor, and for logs of old PX4."""
     if 'TIME' in found and 'StartTime' in found['TIME'].fields:
         raise InputError(f'{path}: this is a log of PX4 before 1.5 (sdlog2), which is not read; '
@@ -198,21 +205,23 @@ def _refuse_others(path, found, parameters):
                          'of ArduCopter of a multirotor')
 
 
-def _stream(messages, columns, values, between=INTERPOLATED):
+def _stream(messages: Messages, columns: Sequence[str], values: np.ndarray,
+            between: str = INTERPOLATED) -> Stream:
     return Stream(f'message {messages.name}', messages.rows['TimeUS'].astype(np.int64) * 1000,
                   dict(zip(columns, np.asarray(values, float).T, strict=True)), between)
 
 
-def _stack(messages, fields):
+def _stack(messages: Messages, fields: Sequence[str]) -> np.ndarray:
     return np.stack([messages.values(field) for field in fields], axis=-1)
 
 
-def _attitude(data):
+def _attitude(data: dict[str, Messages | None]) -> Stream | None:
     fields = ('Q1', 'Q2', 'Q3', 'Q4')
     for name in ('XKQ', 'NKQ'):
-        if _has(data[name], *fields):
-            q = unit_quaternions(_stack(data[name], fields))
-            return _stream(data[name], QUATERNION, frames.attitude(q, 'NED', 'FRD'))
+        messages = data[name]
+        if _has(messages, *fields):
+            q = unit_quaternions(_stack(messages, fields))
+            return _stream(messages, QUATERNION, frames.attitude(q, 'NED', 'FRD'))
     if _has(data['ATT'], 'Roll', 'Pitch', 'Yaw'):
         with np.errstate(all='ignore'):
             q = quaternion_from_euler(np.radians(_stack(data['ATT'], ('Roll', 'Pitch', 'Yaw'))))
@@ -220,13 +229,14 @@ def _attitude(data):
     return None
 
 
-def _motion(data):
+def _motion(data: dict[str, Messages | None]) -> list[Stream]:
     """Return the streams of position and velocity, from the EKF, or else from POS and GPS."""
     position, velocity = ('px', 'py', 'pz'), ('vx', 'vy', 'vz')
     for name in ('XKF1', 'NKF1'):
-        if _has(data[name], 'PN', 'PE', 'PD', 'VN', 'VE', 'VD'):
-            return [_stream(data[name], (*position, *velocity), np.hstack(
-                [frames.world_vector(_stack(data[name], fields), 'NED')
+        messages = data[name]
+        if _has(messages, 'PN', 'PE', 'PD', 'VN', 'VE', 'VD'):
+            return [_stream(messages, (*position, *velocity), np.hstack(
+                [frames.world_vector(_stack(messages, fields), 'NED')
                  for fields in (('PN', 'PE', 'PD'), ('VN', 'VE', 'VD'))]))]
     streams, gps = [], data['GPS']
     if _has(gps, 'Status'):
@@ -243,7 +253,7 @@ def _motion(data):
     return streams
 
 
-def _local(place):
+def _local(place: np.ndarray) -> np.ndarray:
     """Return east, north and up (N, 3) m of latitude, longitude (deg) and height (m)."""
     with np.errstate(all='ignore'):
         latitude, longitude = np.radians(place[:, 0]), np.radians(place[:, 1])
@@ -256,7 +266,7 @@ def _local(place):
                          place[:, 2] - place[0, 2]], axis=-1)
 
 
-def _rate(data):
+def _rate(data: dict[str, Messages | None]) -> Stream | None:
     if _has(data['IMU'], 'GyrX', 'GyrY', 'GyrZ'):
         values = _stack(data['IMU'], ('GyrX', 'GyrY', 'GyrZ'))
         return _stream(data['IMU'], ('wx', 'wy', 'wz'), frames.body_vector(values, 'FRD'))
@@ -266,41 +276,44 @@ def _rate(data):
     return None
 
 
-def _specific_force(data):
+def _specific_force(data: dict[str, Messages | None]) -> Stream | None:
     if not _has(data['IMU'], 'AccX', 'AccY', 'AccZ'):
         return None
     values = _stack(data['IMU'], ('AccX', 'AccY', 'AccZ'))
     return _stream(data['IMU'], ('ax', 'ay', 'az'), frames.body_vector(values, 'FRD'))
 
 
-def _battery(data):
+def _battery(data: dict[str, Messages | None]) -> Stream | None:
     for name in ('BAT', 'CURR'):
-        if _has(data[name], 'Volt') and np.isfinite(data[name].values('Volt')).sum() > 1:
-            return _stream(data[name], ('vbat',), _stack(data[name], ('Volt',)), SLOW)
+        messages = data[name]
+        if _has(messages, 'Volt') and np.isfinite(messages.values('Volt')).sum() > 1:
+            return _stream(messages, ('vbat',), _stack(messages, ('Volt',)), SLOW)
     return None
 
 
-def _channels(parameters):
+def _channels(parameters: dict[str, float]) -> dict[int, int]:
     """Return motor -> channel, from 1, of the parameters SERVOn_FUNCTION."""
-    found = {}
+    motors: dict[float, int] = {**{33 + k: k + 1 for k in range(8)},
+                                **{82 + k: k + 9 for k in range(4)}}
+    found: dict[int, int] = {}
     for name, function in parameters.items():
         match = _MOTOR.fullmatch(name)
-        motor = {**{33 + k: k + 1 for k in range(8)}, **{82 + k: k + 9 for k in range(4)}}.get(
-            function)
+        motor = motors.get(function)
         if match and motor:
             found[motor] = min(found.get(motor, 99), int(match[1]))
     # Motors are counted from 1; none follows a gap.
     return {motor: found[motor] for motor in found if all(k in found for k in range(1, motor))}
 
 
-def _outputs(path, messages, channels, actuators, notes):
+def _outputs(path: Path, messages: Messages | None, channels: dict[int, int],
+             actuators: Actuators | None, notes: list[str]) -> Stream | None:
     """Return the stream of the motors' outputs, or None."""
     where = f'{path}, message RCOU'
     letters = () if messages is None else [name for name in messages.fields
                                            if re.fullmatch(r'(C|Ch)[1-9][0-9]?', name)
                                            and messages.rows[name].dtype.kind in 'iuf']
     by_channel = {int(re.sub(r'\D', '', name)): name for name in letters}
-    if not by_channel:
+    if messages is None or not by_channel:
         if actuators is not None:
             raise InputError(f'{path}: has no message RCOU for the actuators of the mapping; log '
                              'it (LOG_BITMASK, RCOUT), or leave actuators out')
@@ -320,7 +333,7 @@ def _outputs(path, messages, channels, actuators, notes):
     return outputs_stream('message RCOU', messages.rows['TimeUS'].astype(np.int64) * 1000, values)
 
 
-def _rotors(messages, channels, notes):
+def _rotors(messages: Messages | None, channels: dict[int, int], notes: list[str]) -> list[Stream]:
     """Return the streams of measured rotor speeds, one for each motor, or none."""
     field = None if messages is None else _instance_field(messages)
     if field is None or not _has(messages, 'RPM') or not _timed(messages):
@@ -342,7 +355,7 @@ def _rotors(messages, channels, notes):
             for k, (number, one) in enumerate(zip(instances, some, strict=True), 1)]
 
 
-def _about_motors(parameters, channels):
+def _about_motors(parameters: dict[str, float], channels: dict[int, int]) -> dict:
     """Return what is known of the motors, for the info of a record."""
     frame = tuple(parameters.get(name) for name in ('FRAME_CLASS', 'FRAME_TYPE'))
     rotors = directions(_LAYOUTS[frame]) if frame in _LAYOUTS else ()
@@ -351,7 +364,7 @@ def _about_motors(parameters, channels):
                         ardupilot_curve(parameters) if channels else None)
 
 
-def _order_notes(parameters, known):
+def _order_notes(parameters: dict[str, float], known: bool) -> list[str]:
     """Return notes on the order of the motors, and on the map from throttle to PWM."""
     notes, frame = [], tuple(parameters.get(name) for name in ('FRAME_CLASS', 'FRAME_TYPE'))
     if known and frame in _PLACES:

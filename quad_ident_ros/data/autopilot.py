@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the readers of logs with known names share: outputs, attitudes, and the mapping."""
 
+from pathlib import Path
+
 import numpy as np
 
 from quad_ident_ros.data.mapping import Mapping
@@ -9,7 +11,8 @@ from quad_ident_ros.data.streams import HELD, Stream
 from quad_ident_ros.errors import InputError
 
 
-def known_names(path, title, mapping, instances=False):
+def known_names(path: Path, title: str, mapping: Mapping | None, instances: bool = False
+                ) -> Mapping:
     """
     Return a mapping for a log whose names and frames are known.
 
@@ -25,13 +28,13 @@ def known_names(path, title, mapping, instances=False):
     return mapping
 
 
-def outputs_stream(source, stamps, values):
+def outputs_stream(source: str, stamps: np.ndarray, values: np.ndarray) -> Stream:
     """Return the HELD Stream output1..m of actuator outputs (N, m), of motors 1..m."""
     return Stream(source, stamps, {f'output{k + 1}': column
                                    for k, column in enumerate(np.asarray(values, float).T)}, HELD)
 
 
-def unit_quaternions(quaternion):
+def unit_quaternions(quaternion: np.ndarray) -> np.ndarray:
     """Return quaternions (N, 4) of unit length; nan where they are no attitude."""
     with np.errstate(all='ignore'):
         q = np.asarray(quaternion, float)

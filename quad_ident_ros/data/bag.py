@@ -3,17 +3,20 @@
 """Rosbag2 folders (MCAP), written so that a crash costs little."""
 
 from collections import defaultdict
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from functools import cache
-from io import BytesIO
+from io import BufferedWriter, BytesIO, FileIO
 from itertools import starmap
 import os
 from pathlib import Path
 import shutil
 import struct
+from typing import Any, cast
 from zlib import crc32
 
 from rosbags.interfaces import (
+    Connection,
     Nodetype,
     Qos,
     QosDurability,
@@ -22,11 +25,14 @@ from rosbags.interfaces import (
     QosReliability,
     QosTime,
 )
-from rosbags.rosbag2 import StoragePlugin, Writer
+from rosbags.rosbag2 import CompressionMode, StoragePlugin, Writer
 from rosbags.rosbag2.storage_mcap import McapWriter, PendingChunk
 from rosbags.typesys import get_typestore, Stores
+from rosbags.typesys.store import Typestore
 
+from quad_ident_ros.data.alike import Field
 from quad_ident_ros.data.bag_metadata import inner_metadata, metadata_template, metadata_text
+from quad_ident_ros.data.message import Message
 from quad_ident_ros.data.recovered import (
     CHUNK,
     END_BYTES,
@@ -48,24 +54,25 @@ _QOS = Qos(QosHistory.KEEP_ALL, 0, QosReliability.RELIABLE, QosDurability.VOLATI
 
 
 @cache
-def _typestore():
+def _typestore() -> Typestore:
     return get_typestore(Stores.ROS2_JAZZY)
 
 
-def is_known(msgtype):
+def is_known(msgtype: str) -> bool:
     """Whether a message type is one of ROS 2 Jazzy, which can be written to a bag."""
     return msgtype in _typestore().fielddefs
 
 
-def serialize(msgtype, fields):
+def serialize(msgtype: str, fields: Mapping[str, Any]) -> bytes:
     """Return the serialized message of a type of ROS 2 Jazzy, given its fields as nested dicts."""
     return bytes(_typestore().serialize_cdr(_message(msgtype, fields), msgtype))
 
 
-def _message(msgtype, fields):
+def _message(msgtype: str, fields: Mapping[str, Any]) -> Message:
     store = _typestore()
     values = {}
-    for name, (node, kind) in store.fielddefs[msgtype][1]:
+    declared: Iterable[tuple[str, Field]] = store.fielddefs[msgtype][1]
+    for name, (node, kind) in declared:
         if node == Nodetype.NAME:
             values[name] = _message(kind, fields[name])
         elif node == Nodetype.SEQUENCE and kind[0][0] == Nodetype.NAME:
@@ -90,7 +97,7 @@ class BagWriter:
     use by several threads at once.
     """
 
-    def __init__(self, path, topics):
+    def __init__(self, path: str | Path, topics: Iterable[tuple[str, str]]) -> None:
         """Make the folder, with a bag without messages."""
         path = Path(path)
         topics = list(topics)
@@ -109,10 +116,10 @@ class BagWriter:
         self._writer = _Writer(begun, version=9, storage_plugin=StoragePlugin.MCAP)
         self._dirty = True
         self._failed = False
-        self._storage = None
+        opened: _Storage | None = None
         try:
             self._writer.open()
-            self._storage = self._writer.storage
+            self._storage = opened = self._writer.storage
             self._storage.move(begun / f'{path.name}.mcap')
             self._connections = {
                 name: self._writer.add_connection(name, msgtype, typestore=_typestore(),
@@ -121,12 +128,12 @@ class BagWriter:
             self.flush()
             self._writer.move(path)
         except OSError:
-            if self._storage:
-                self._storage.abort()
+            if opened:
+                opened.abort()
             shutil.rmtree(begun, ignore_errors=True)
             raise
 
-    def write(self, topic, stamp_ns, cdr):
+    def write(self, topic: str, stamp_ns: int, cdr: bytes) -> None:
         """
         Add a message.
 
@@ -141,7 +148,7 @@ class BagWriter:
         if self._storage.bio.pending > _PENDING_BYTES:
             self.flush()
 
-    def flush(self):
+    def flush(self) -> None:
         """Hand all messages to the operating system; OSError where it does not take them."""
         if not self._dirty:
             return
@@ -149,7 +156,7 @@ class BagWriter:
         self._writer.close()
         self._dirty = self._failed = False
 
-    def close(self):
+    def close(self) -> None:
         """Flush and close; after a failed flush try once more, without an error."""
         failed_before = self._failed
         try:
@@ -161,11 +168,11 @@ class BagWriter:
             self._dirty = False
             self._storage.abort()
 
-    def __enter__(self):
+    def __enter__(self) -> 'BagWriter':
         """Return the writer itself."""
         return self
 
-    def __exit__(self, *_):
+    def __exit__(self, *_: object) -> None:
         """Close the bag."""
         self.close()
 
@@ -178,7 +185,7 @@ class _TailedFile:
     commit, so that the file on disk has its tail at all times but within the one write.
     """
 
-    def __init__(self, raw):
+    def __init__(self, raw: FileIO) -> None:
         """Go on at the position of an unbuffered file, which nothing is behind."""
         self._raw = raw
         self._base = raw.tell()
@@ -187,34 +194,34 @@ class _TailedFile:
         self._old_tail = b''
 
     @property
-    def pending(self):
+    def pending(self) -> int:
         """Return the number of bytes that are not committed."""
         return len(self._pending)
 
-    def tell(self):
+    def tell(self) -> int:
         """Return the position that the next byte is written to."""
         return self._base + len(self._pending)
 
-    def write(self, data):
+    def write(self, data: bytes | memoryview) -> int:
         """Add bytes; return their number."""
         before = len(self._pending)
         self._pending += data
         return len(self._pending) - before
 
-    def amend(self, position, data):
+    def amend(self, position: int, data: bytes) -> None:
         """Put other bytes in the place of some that are not committed yet."""
         at = position - self._base
         self._pending[at:at + len(data)] = data
 
-    def begin_tail(self):
+    def begin_tail(self) -> None:
         """Have all that is written from here to the next commit be the tail."""
         self._body = len(self._pending)
 
-    def drop_tail(self):
+    def drop_tail(self) -> None:
         """Forget what was written of the tail."""
         del self._pending[self._body:]
 
-    def close(self):
+    def close(self) -> None:
         """Commit: write body and tail, or, if that fails, put the old tail back and raise."""
         try:
             self._write(self._pending)
@@ -227,11 +234,11 @@ class _TailedFile:
         self._old_tail = bytes(self._pending[self._body:])
         self._pending.clear()
 
-    def release(self):
+    def release(self) -> None:
         """Close the file on disk as it is."""
         self._raw.close()
 
-    def _write(self, data):
+    def _write(self, data: bytes | bytearray) -> None:
         self._raw.seek(self._base)
         with memoryview(data) as rest:
             done = 0
@@ -242,7 +249,7 @@ class _TailedFile:
 class _McapFile(_TailedFile):
     """That of an MCAP file, whose summary gets its checksum at every commit."""
 
-    def close(self):
+    def close(self) -> None:
         """Commit with the checksum of the summary, from its begin to that number itself."""
         place = self.tell() - END_BYTES + SUMMARY_CHECKSUM
         (begin,) = struct.unpack_from('<Q', self._pending, len(self._pending) - END_BYTES + 9)
@@ -256,18 +263,21 @@ class _McapFile(_TailedFile):
 class _Storage(McapWriter):
     """An McapWriter that can be closed, that is finished with an index, again and again."""
 
-    def __init__(self, path, compression):
+    bio: _McapFile  # type: ignore[assignment]  # in the place of the file of McapWriter
+
+    def __init__(self, path: Path, compression: CompressionMode) -> None:
         """Make the file."""
         super().__init__(path, compression)
-        raw = self.bio.raw
+        file = cast(BufferedWriter, self.bio)
+        raw = cast(FileIO, file.raw)
         try:
-            self.bio.detach()
+            file.detach()
         except OSError:
             raw.close()
             raise
         self.bio = _McapFile(raw)
 
-    def write(self, connection, timestamp, data):
+    def write(self, connection: Connection, timestamp: int, data: bytes | memoryview) -> None:
         """Add a message; what McapWriter.write does, in a fifth of its time."""
         chunk = self.chunk
         self.channel_stats[connection.id] += 1
@@ -280,7 +290,7 @@ class _Storage(McapWriter):
         if chunk.bio.tell() > _CHUNK_BYTES:
             self.close_chunk()
 
-    def close_chunk(self):
+    def close_chunk(self) -> None:
         """
         Write the pending chunk with its checksum, and the places of its messages.
 
@@ -307,7 +317,7 @@ class _Storage(McapWriter):
             + struct.pack('<QIQQ', self.bio.tell() - end, 0, size, size))
         self.chunk = PendingChunk(2 ** 63 - 1, 0, BytesIO(), defaultdict(list))
 
-    def close(self, version, metadata):
+    def close(self, version: int, metadata: str) -> None:
         """Write the pending chunk and the tail."""
         if self.chunk.bio.tell():
             self.close_chunk()
@@ -318,12 +328,12 @@ class _Storage(McapWriter):
             self.bio.drop_tail()
             raise
 
-    def move(self, path):
+    def move(self, path: Path) -> None:
         """Give the file another path on the same disk."""
         os.rename(self.path, path)
         self.path = path
 
-    def abort(self):
+    def abort(self) -> None:
         """Close the file on disk as it is."""
         self.bio.release()
 
@@ -332,9 +342,10 @@ class _Writer(Writer):
     """A Writer onto that storage, which can be closed again and again."""
 
     STORAGE_PLUGINS = {StoragePlugin.MCAP: _Storage}
-    _template = None    # of metadata.yaml
+    storage: _Storage               # once it is open
+    _template: str | None = None    # of metadata.yaml
 
-    def close(self):
+    def close(self) -> None:
         """Write what is pending, the index, and metadata.yaml, which is whole at all times."""
         # As rosbags does, only faster.
         if self._template is None:
@@ -350,7 +361,7 @@ class _Writer(Writer):
                 temporary.unlink(missing_ok=True)
             raise
 
-    def move(self, path):
+    def move(self, path: Path) -> None:
         """Give the folder another path on the same disk."""
         os.rename(self.path, path)
         self.path, self.metapath = path, path / self.metapath.name

@@ -2,9 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """How the messages of a type in a bag are read, and bounds beyond which a type is absurd."""
 
+from collections.abc import Callable, Collection, Iterable, Iterator
 from functools import cache, lru_cache
+from typing import TYPE_CHECKING
 
-from rosbags.interfaces import MessageDefinitionFormat, Nodetype
+from rosbags.interfaces import Connection, MessageDefinition, MessageDefinitionFormat, Nodetype
 from rosbags.typesys import (
     get_types_from_idl,
     get_types_from_msg,
@@ -13,10 +15,15 @@ from rosbags.typesys import (
     TypesysError,
 )
 from rosbags.typesys.msg import normalize_msgtype
+from rosbags.typesys.store import Typestore
 
-from quad_ident_ros.data.alike import layout_of
+from quad_ident_ros.data.alike import Field, Layout, layout_of
 from quad_ident_ros.data.definitions import layouts, START
+from quad_ident_ros.data.message import Message
 from quad_ident_ros.errors import Reason
+
+if TYPE_CHECKING:
+    from rosbags.interfaces.typing import Typesdict
 
 LEAVES = ('geometry_msgs/msg/Point', 'geometry_msgs/msg/Vector3', 'geometry_msgs/msg/Quaternion',
           'builtin_interfaces/msg/Time', 'builtin_interfaces/msg/Duration')
@@ -35,20 +42,20 @@ class BadType(TypesysError, Reason):
 
 
 @cache
-def _defaults(ros1):
+def _defaults(ros1: bool) -> 'Typesdict':
     return get_typestore(Stores.ROS1_NOETIC if ros1 else Stores.ROS2_JAZZY).fielddefs
 
 
 class Codec:
     """How the messages of one type in a bag are read."""
 
-    def __init__(self, connection, ros1):
+    def __init__(self, connection: Connection, ros1: bool) -> None:
         """Take the definition of the bag, or one that ships where the bag has none."""
         self._type = normalize_msgtype(connection.msgtype)
         self._ros1 = ros1
         definition = connection.msgdef
         if definition.format != MessageDefinitionFormat.NONE and definition.data.strip():
-            candidates = [('', definition)]
+            candidates: list[tuple[str, MessageDefinition | str | None]] = [('', definition)]
         elif self._type in _defaults(ros1):
             candidates = [('', None)]
         else:
@@ -61,21 +68,24 @@ class Codec:
         self._topic = connection.topic
         self._candidates = [(version, _store(self._type, source, ros1))
                             for version, source in candidates]
-        self._chosen = self._store = None
+        self._chosen: Callable[[bytes], Message] | None = None
+        self._store: Typestore | None = None
 
-    def layout(self, data, message, fixed):
+    def layout(self, data: bytes, message: Message, fixed: Collection[str]) -> Layout | None:
         """Return the Layout of a message that was read, or None, see alike.layout_of."""
+        if self._store is None:
+            return None
         return layout_of(data, message, self._store, ros1=self._ros1, fixed=fixed)
 
-    def paths(self):
+    def paths(self) -> tuple[str, ...]:
         """Return the paths of the fields of the usual layout."""
         return tuple(_paths(self._type, self._candidates[0][1].fielddefs))
 
-    def message(self, data):
+    def message(self, data: bytes) -> Message:
         """Return the message in bytes; the length decides between several layouts of a type."""
         if self._chosen is not None:
             return self._chosen(data)
-        problem = None
+        problem: Exception | None = None
         for version, store in self._candidates:
             read = self._reader(version, store)
             try:
@@ -89,22 +99,23 @@ class Codec:
             raise BadType(f'topic {self._topic}: the bag has no definition of {self._type}, '
                           'and its messages have the length of none that ships; convert it '
                           'to MCAP where the package is installed: ros2 bag convert')
+        assert problem is not None
         raise problem
 
-    def _reader(self, version, store):
+    def _reader(self, version: str, store: Typestore) -> Callable[[bytes], Message]:
         if self._ros1:
             return lambda data: store.deserialize_ros1(data, self._type)
         if version != START:
             return lambda data: store.deserialize_cdr(data, self._type)
         definition = store.get_msgdef(self._type)
 
-        def begin(data):
+        def begin(data: bytes) -> Message:
             read = definition.deserialize_cdr_le if data[1] else definition.deserialize_cdr_be
             return read(data[4:], 0, definition.cls, store)[0]
         return begin
 
 
-def _parsed(definition, msgtype):
+def _parsed(definition: MessageDefinition, msgtype: str) -> 'Typesdict':
     """Return the types in a definition of a bag."""
     text = definition.data
     if definition.format == MessageDefinitionFormat.MSG:
@@ -118,7 +129,7 @@ def _parsed(definition, msgtype):
 
 
 @lru_cache(maxsize=64)
-def _store(msgtype, source, ros1):
+def _store(msgtype: str, source: MessageDefinition | str | None, ros1: bool) -> Typestore:
     """
     Return a Typestore with a type and all that it is made of.
 
@@ -153,7 +164,7 @@ def _store(msgtype, source, ros1):
     return store
 
 
-def _inner(field):
+def _inner(field: Field) -> str | None:
     """Return the type of message that a field is of or is a list of, or None."""
     node, what = field
     if node in (Nodetype.ARRAY, Nodetype.SEQUENCE):
@@ -161,11 +172,11 @@ def _inner(field):
     return what if node == Nodetype.NAME else None
 
 
-def _check_lists(msgtype, types):
+def _check_lists(msgtype: str, types: 'Typesdict') -> None:
     """Refuse types that contain themselves, and lists whose entries take no bytes."""
     sizes = {}
 
-    def least(name, above):
+    def least(name: str, above: tuple[str, ...]) -> int:
         """Return the bytes that a message of a type has at least, up to a few."""
         if name in above:
             raise BadType(f'the definition of {name} contains itself')
@@ -174,7 +185,7 @@ def _check_lists(msgtype, types):
                               if field != _NO_FIELD)
         return sizes[name]
 
-    def bytes_of(field, above):
+    def bytes_of(field: Field, above: tuple[str, ...]) -> int:
         node, what = field
         if node == Nodetype.NAME:
             return least(what, above)
@@ -194,13 +205,14 @@ def _check_lists(msgtype, types):
     least(msgtype, ())
 
 
-def _paths(msgtype, types):
+def _paths(msgtype: str, types: 'Typesdict') -> Iterator[str]:
     """Yield the paths of the fields of a type: control[12], esc_status[].rpm, pose.position."""
     left = _FIELDS
 
-    def walk(name, before):
+    def walk(name: str, before: str) -> Iterator[str]:
         nonlocal left
-        for field, (node, what) in types[name][1]:
+        declared: Iterable[tuple[str, Field]] = types[name][1]
+        for field, (node, what) in declared:
             if left <= 0 or field == _NO_FIELD:
                 return
             path = f'{before}{field}'

@@ -3,11 +3,14 @@
 """What the topics of a bag are, by their types where these leave no doubt."""
 
 from dataclasses import replace
+from pathlib import Path
 import re
 
 import numpy as np
 
-from quad_ident_ros.data.mapping import ROLES, Source
+from quad_ident_ros.data.bag_file import BagFile, Topic
+from quad_ident_ros.data.mapping import Mapping, ROLES, Source
+from quad_ident_ros.data.message import Message
 from quad_ident_ros.data.message_roles import could_be, is_tf, NoSuch, reading_of, ROLES_OF
 from quad_ident_ros.data.topics import not_unit, OTHER_SHAPE
 from quad_ident_ros.errors import InputError
@@ -27,7 +30,7 @@ _INPUT = re.compile(r'(^|/)fmu/in/')
 _SECOND = re.compile(r'raw|ground_?truth|(^|/)odometry/(in|out)$|(^|/)global_position/')
 
 
-def guessed(path, bag, mapping):
+def guessed(path: str | Path, bag: BagFile, mapping: Mapping) -> tuple[Mapping, list[str]]:
     """
     Return (mapping with topics, notes) for an open BagFile, by the types of its topics.
 
@@ -60,9 +63,10 @@ def guessed(path, bag, mapping):
     return replace(mapping, topics=sources), _notes(found, topics)
 
 
-def _best(role, topics, first):
+def _best(role: str, topics: list[Topic], first: dict[str, Message]
+          ) -> tuple[list[Topic], list[Topic]]:
     """Return the topics that serve a role best, and those that could as well."""
-    ranked = {}
+    ranked: dict[int, list[Topic]] = {}
     commanded = any(_speeds(topic) and _ASKED.search(topic.name.lower()) for topic in topics)
     for topic in topics:
         rank = _rank(role, topic, first.get(topic.name), commanded)
@@ -75,7 +79,7 @@ def _best(role, topics, first):
                            for topic in some]
 
 
-def _rank(role, topic, message, commanded):
+def _rank(role: str, topic: Topic, message: Message, commanded: bool) -> int | None:
     """Return how far behind others a topic is for a role, None where it does not serve it."""
     known = ROLES_OF.get(topic.type, {}).get(role)
     if known is None or known.rank is None or message is None:
@@ -88,7 +92,7 @@ def _rank(role, topic, message, commanded):
     return known.rank + _BEHIND * bool(_SECOND.search(name) or _INPUT.search(name))
 
 
-def _meant(role, topic, name, commanded):
+def _meant(role: str, topic: Topic, name: str, commanded: bool) -> bool:
     """
     Whether the name of a topic goes with a role.
 
@@ -102,12 +106,12 @@ def _meant(role, topic, name, commanded):
     return True
 
 
-def _speeds(topic):
+def _speeds(topic: Topic) -> bool:
     """Whether a topic holds rotor speeds that may be commands or measured."""
     return topic.type.endswith('/Actuators')
 
 
-def _holds(role, msgtype, message):
+def _holds(role: str, msgtype: str, message: Message) -> bool:
     """Whether the first message holds values of a role."""
     try:
         if is_tf(msgtype):
@@ -116,7 +120,7 @@ def _holds(role, msgtype, message):
         with np.errstate(invalid='ignore'):     # a signalling not-a-number becomes a quiet one
             values = np.array(reading.values(message), float)
         if role == 'velocity' and msgtype.startswith('geometry_msgs/'):
-            return reading.frame(message) != ''
+            return reading.frame is not None and reading.frame(message) != ''
     except (NoSuch, *OTHER_SHAPE):
         return False
     if role == 'attitude':
@@ -124,9 +128,9 @@ def _holds(role, msgtype, message):
     return role not in ('rate', 'specific_force') or bool(np.isfinite(values).all())
 
 
-def _notes(found, topics):
+def _notes(found: dict[str, tuple[list[Topic], list[Topic]]], topics: list[Topic]) -> list[str]:
     """Return what was taken for what, as notes of the record."""
-    taken = {}
+    taken: dict[Topic, list[str]] = {}
     for role, (best, _) in found.items():
         if len(best) == 1:
             taken.setdefault(best[0], []).append(role)
@@ -150,7 +154,7 @@ def _notes(found, topics):
     return notes
 
 
-def _listed(topics):
+def _listed(topics: list[Topic]) -> str:
     """Return names and types of topics in one line."""
     if not topics:
         return 'no messages'

@@ -7,16 +7,19 @@ Its body axes are forward, left, up, as here; its world is north, west, up. Sour
 imu.c and blackbox.c, and the units of its log viewer.
 """
 
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 import re
 import struct
+from typing import Any
 
 import numpy as np
 
 from quad_ident_ros.data.autopilot import known_names, outputs_stream
-from quad_ident_ros.data.blackbox import read_logs
+from quad_ident_ros.data.blackbox import Log, read_logs
+from quad_ident_ros.data.mapping import Actuators, Mapping
 from quad_ident_ros.data.motor_order import about_motors, quad
-from quad_ident_ros.data.readers.base import content_of
+from quad_ident_ros.data.readers.base import Content, content_of
 from quad_ident_ros.data.record import FlightRecord, QUATERNION
 from quad_ident_ros.data.streams import INTERPOLATED, join, SLOW, Stream
 from quad_ident_ros.errors import InputError
@@ -24,7 +27,7 @@ from quad_ident_ros.gravity import GRAVITY
 from quad_ident_ros.model.attitude import product
 
 
-def _three(name):
+def _three(name: str) -> tuple[str, ...]:
     return tuple(f'{name}[{k}]' for k in range(3))
 
 
@@ -44,7 +47,7 @@ _ENU_FROM_NWU = np.array([_HALF, 0.0, 0.0, _HALF])      # a quarter of a turn ab
 _REVISION = re.compile(r'Betaflight ([0-9]{1,4})\.([0-9]{1,4})')
 
 
-def read_betaflight(path, mapping=None):
+def read_betaflight(path: str | Path, mapping: Mapping | None = None) -> list[FlightRecord]:
     """
     Return the FlightRecords of a blackbox file, one for each of its logs, in ENU and FLU.
 
@@ -58,7 +61,7 @@ def read_betaflight(path, mapping=None):
     return [_record(path, log, len(logs), mapping.actuators) for log in logs]
 
 
-def contents(path):
+def contents(path: str | Path) -> list[Content]:
     """Return the Content of each log in a blackbox file; errors of read_logs."""
     return [content_of(f'log {log.number}', str(log.headers.get('Firmware revision',
                                                                 'blackbox'))[:60],
@@ -67,18 +70,18 @@ def contents(path):
             for log in read_logs(path, ())]
 
 
-def _record(path, log, count, actuators):
+def _record(path: Path, log: Log, count: int, actuators: Actuators | None) -> FlightRecord:
     where = str(path) if count == 1 else f'{path}, log {log.number}'
     if str(log.headers.get('Firmware type', '')).startswith('Rotorflight'):
         raise InputError(f'{where}: this is a log of Rotorflight, of a helicopter, which is not '
                          'a multirotor; give a log of Betaflight')
     notes = list(log.notes)
-    streams = [_attitude(log), _rate(log, notes), _specific_force(log, notes),
-               _rotors(log, notes), _battery(log, notes)]
+    read = [_attitude(log), _rate(log, notes), _specific_force(log, notes), _rotors(log, notes),
+            _battery(log, notes)]
     motors = [name for name in MOTORS if name in log.values]
     kind = ''
     if motors:
-        streams.append(outputs_stream('motor', _stamps(log), _stack(log, motors)))
+        read.append(outputs_stream('motor', _stamps(log), _stack(log, motors)))
         notes += [ORDER] if len(motors) == 4 else []
         span = log.headers.get('motorOutput')
         if isinstance(span, list) and len(span) == 2:
@@ -87,7 +90,7 @@ def _record(path, log, count, actuators):
     elif actuators is not None:
         raise InputError(f'{where}: has no field motor[0] for the actuators of the mapping; log '
                          'it, or leave actuators out')
-    streams = [stream for stream in streams if stream is not None]
+    streams = [stream for stream in read if stream is not None]
     if not any(set(stream.columns) - {'vbat'} for stream in streams):
         raise InputError(f'{where}: has none of the fields gyroADC, accSmooth and motor; log them')
     start, t, columns, left_out = join(where, streams)
@@ -102,25 +105,26 @@ def _record(path, log, count, actuators):
                                          if log.headers.get(name)}})
 
 
-def _stamps(log):
+def _stamps(log: Log) -> np.ndarray:
     return log.values['time'].astype(np.int64) * 1000
 
 
-def _stack(log, names):
+def _stack(log: Log, names: Sequence[str]) -> np.ndarray:
     return np.stack([log.values[name] for name in names], axis=-1)
 
 
-def _stream(log, source, columns, values, between=INTERPOLATED):
+def _stream(log: Log, source: str, columns: Sequence[str], values: np.ndarray,
+            between: str = INTERPOLATED) -> Stream:
     return Stream(source, _stamps(log), dict(zip(columns, values.T, strict=True)), between)
 
 
-def _there(log, names):
+def _there(log: Log, names: Iterable[str]) -> bool:
     return all(name in log.values for name in names)
 
 
-def _number(log, name):
+def _number(log: Log, name: str) -> float | None:
     """Return a header as a positive float, or None."""
-    value = log.headers.get(name)
+    value: Any = log.headers.get(name)
     try:
         value = float(value)
     except (OverflowError, TypeError, ValueError):
@@ -128,7 +132,7 @@ def _number(log, name):
     return value if 0.0 < value < 1e12 else None
 
 
-def _rate(log, notes):
+def _rate(log: Log, notes: list[str]) -> Stream | None:
     if not _there(log, GYRO):
         return None
     raw = log.headers.get('gyro_scale', log.headers.get('gyro.scale'))
@@ -145,7 +149,7 @@ def _rate(log, notes):
     return _stream(log, 'gyroADC', ('wx', 'wy', 'wz'), np.radians(scale * _stack(log, GYRO)))
 
 
-def _specific_force(log, notes):
+def _specific_force(log: Log, notes: list[str]) -> Stream | None:
     if not _there(log, ACCELEROMETER):
         return None
     one = _number(log, 'acc_1G')
@@ -156,7 +160,7 @@ def _specific_force(log, notes):
     return _stream(log, 'accSmooth', ('ax', 'ay', 'az'), force)
 
 
-def _attitude(log):
+def _attitude(log: Log) -> Stream | None:
     if not _there(log, ATTITUDE):
         return None
     vector = _stack(log, ATTITUDE) / 32767.0
@@ -166,7 +170,7 @@ def _attitude(log):
     return _stream(log, 'imuQuaternion', QUATERNION, q)
 
 
-def _rotors(log, notes):
+def _rotors(log: Log, notes: list[str]) -> Stream | None:
     names = [name for name in SPEEDS if name in log.values]
     if not names:
         return None
@@ -179,7 +183,7 @@ def _rotors(log, notes):
                    _stack(log, names) * (200.0 / poles * np.pi / 30.0))
 
 
-def _battery(log, notes):
+def _battery(log: Log, notes: list[str]) -> Stream | None:
     if 'vbatLatest' not in log.values:
         return None
     match = _REVISION.match(str(log.headers.get('Firmware revision', '')))

@@ -7,15 +7,21 @@ Source: the format as orangebox and Betaflight's blackbox.c have it.
 """
 
 from array import array
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 import logging
 from pathlib import Path
 import re
+from typing import Any, BinaryIO, TYPE_CHECKING
 
 import numpy as np
 
 from quad_ident_ros.errors import InputError
+
+if TYPE_CHECKING:
+    from orangebox.parser import Parser
+    from orangebox.reader import Reader
 
 MAGIC = b'H Product:Blackbox'
 
@@ -37,17 +43,17 @@ class Log:
     """One log of a file: its number from 1, headers, fields, values name -> (n,), and notes."""
 
     number: int
-    headers: dict
-    fields: tuple
-    values: dict
-    notes: tuple
+    headers: dict[str, Any]
+    fields: tuple[str, ...]
+    values: dict[str, np.ndarray]
+    notes: tuple[str, ...]
 
 
 class _TooMuch(Exception):
     """More is read over and over than a log is worth."""
 
 
-def read_logs(path, wanted):
+def read_logs(path: str | Path, wanted: Iterable[str]) -> list[Log]:
     """
     Return the Logs in a file that have at least two frames, with the wanted fields and time.
 
@@ -70,7 +76,7 @@ def read_logs(path, wanted):
 
 
 @contextmanager
-def _quiet():
+def _quiet() -> Iterator[None]:
     """Keep orangebox from printing a line for each thing that it does not know."""
     logger = logging.getLogger('orangebox')
     level = logger.level
@@ -81,18 +87,19 @@ def _quiet():
         logger.setLevel(level)
 
 
-def _bounded(path, number=None):
+def _bounded(path: Path, number: int | None = None) -> 'Reader':
     """Return an orangebox Reader of a log that ends at the end, within bounds."""
     from orangebox.reader import Reader
 
     class Bounded(Reader):
+        _frame_data_ptr: int
         left = 0
 
-        def set_log_index(self, index):
+        def set_log_index(self, index: int) -> None:
             super().set_log_index(index)
             self.left = _AGAIN * self._frame_data_len + 100_000
 
-        def _update_headers(self, file):
+        def _update_headers(self, file: BinaryIO) -> None:
             start = file.tell()
             for _ in range(_MOST_LINES):
                 before = file.tell()
@@ -105,7 +112,7 @@ def _bounded(path, number=None):
                 self._parse_header_line(text.encode())
             self._header_size = file.tell() - start
 
-        def __next__(self):
+        def __next__(self) -> int:
             at = self._frame_data_ptr
             if at >= self._frame_data_len:
                 raise StopIteration
@@ -118,7 +125,7 @@ def _bounded(path, number=None):
     return Bounded(str(path), number)
 
 
-def _log(path, number, count, wanted):
+def _log(path: Path, number: int, count: int, wanted: Iterable[str]) -> Log | str:
     """Return a Log, or a sentence that says why it cannot be read."""
     which = 'this blackbox log' if count == 1 else f'log {number} of {count}'
     from orangebox.parser import Parser
@@ -146,7 +153,7 @@ def _log(path, number, count, wanted):
                tuple(notes))
 
 
-def _problem(reader):
+def _problem(reader: 'Reader') -> str | None:
     """Return what keeps orangebox from reading frames, or None."""
     definitions = {kind.value: fields for kind, fields in reader.field_defs.items()}
     intra, inter = definitions.get('I', []), definitions.get('P', [])
@@ -174,7 +181,8 @@ def _problem(reader):
     return None
 
 
-def _columns(parser, reader, indices):
+def _columns(parser: 'Parser', reader: 'Reader', indices: Sequence[int]
+             ) -> tuple[list[np.ndarray], int]:
     """Return the columns (n,) of fields by their indices, and how many frames are damaged."""
     from orangebox.types import FrameType
     columns = [array('d') for _ in indices]
@@ -202,7 +210,7 @@ def _columns(parser, reader, indices):
     return [np.frombuffer(column, float) for column in columns], damaged
 
 
-def _far(time):
+def _far(time: np.ndarray) -> np.ndarray:
     """Return which times (n,) us are far from both of their neighbours, (n,) bool."""
     steps = np.abs(np.diff(time)) > _JUMP
     return np.concatenate([[True], steps]) & np.concatenate([steps, [True]])

@@ -2,12 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """The bounded window of joined rows, cut into flight records."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
+from quad_ident_ros.data.joiner import Row
 from quad_ident_ros.data.record import FIRST_SAMPLE_INFO, FlightRecord
-from quad_ident_ros.data.topics import arm_of, needed_from, record_columns, run_at
+from quad_ident_ros.data.topics import arm_of, needed_from, record_columns, run_at, RunNotice
 
 
 @dataclass(frozen=True)
@@ -29,20 +31,20 @@ class RecordBuffer:
     yet; limits: Limits.
     """
 
-    def __init__(self, columns, limits):
+    def __init__(self, columns: Iterable[str], limits: Limits) -> None:
         self.limits = limits
         self.columns = tuple(columns)
-        self._rows = []
-        self._runs = []
-        self._run = None
+        self._rows: list[Row] = []
+        self._runs: list[RunNotice] = []
+        self._run: RunNotice | None = None
         self._accounted = 0   # samples of this run in earlier records, or missing before them
         self._counted = 0     # samples missing between the rows that an overlap has kept
         self.missing = 0      # samples that no record has
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self._rows)
 
-    def add_run(self, notice):
+    def add_run(self, notice: RunNotice) -> list[FlightRecord]:
         """Take the notice of a run and return the records that it completes."""
         self._runs = [run for run in self._runs if run.start_ns != notice.start_ns] + [notice]
         if self._run is not None and self._run.start_ns == notice.start_ns:
@@ -60,7 +62,7 @@ class RecordBuffer:
         rows, self._rows = self._rows, []
         return self.add_rows(rows)
 
-    def add_rows(self, rows):
+    def add_rows(self, rows: Iterable[Row]) -> list[FlightRecord]:
         """Take rows (stamp_ns, values) and return the records that they complete."""
         done = []
         for row in rows:
@@ -79,18 +81,19 @@ class RecordBuffer:
             self._runs = needed_from(self._runs, self._run)
         return done
 
-    def _end_run(self):
+    def _end_run(self) -> list[FlightRecord]:
         done = self.complete(run_over=True)
+        assert self._run is not None
         self._runs.remove(self._run)
         self._run, self._accounted = None, 0
         return done
 
     @property
-    def run_name(self):
+    def run_name(self) -> str | None:
         """Name of the announced run that is under way, or None."""
-        return self._run and (self._run.info.get('name') or 'unnamed')
+        return None if self._run is None else self._run.info.get('name') or 'unnamed'
 
-    def complete(self, overlap=0.0, run_over=False):
+    def complete(self, overlap: float = 0.0, run_over: bool = False) -> list[FlightRecord]:
         """
         Return [the record of the rows so far] or [], keeping a share of the rows.
 
@@ -117,13 +120,13 @@ class RecordBuffer:
         return [FlightRecord((stamps - stamps[0]) * 1e-9,
                              record_columns(self.columns, table, arm_of(info)), info)]
 
-    def _full(self):
+    def _full(self) -> bool:
         span = self._rows[-1][0] - self._rows[0][0]
         return (len(self._rows) >= self.limits.samples
                 or span >= self.limits.seconds * 1e9 * (1 - 1e-9))
 
 
-def _gaps(stamps):
+def _gaps(stamps: np.ndarray) -> np.ndarray:
     """Return how many samples are missing after each sample but the last."""
     steps = np.diff(stamps)
     if not steps.size:

@@ -2,12 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Clocks of states and commands of flights, from what the commands answer."""
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from quad_ident_ros.data.aligned import aligned
-from quad_ident_ros.data.quality.answer import answer_of, CLEAR
+from quad_ident_ros.data.quality.answer import Answer, answer_of, CLEAR
+from quad_ident_ros.data.record import FlightRecord
 
 ALIKE = 0.001, 0.1      # s, or samples if that is more, within which the lags of flights are one
 LEAST = 0.0005          # s of an offset that is worth moving commands for
@@ -29,7 +31,8 @@ class Clock:
     period: float
 
 
-def on_one_clock(records):
+def on_one_clock(records: Iterable[FlightRecord]
+                 ) -> list[tuple[FlightRecord, dict[str, float], Answer | None]]:
     """
     Return for each record itself with its streams aligned, {stream: s} moved, and its Answer.
 
@@ -39,7 +42,8 @@ def on_one_clock(records):
     return [(record, late, None if late else answer_of(record)) for record, late in found]
 
 
-def clocks_of(answers, held_out=()):
+def clocks_of(answers: Sequence[Answer | None], held_out: Sequence[Answer | None] = ()
+              ) -> list[Clock | None]:
     """
     Return the Clock, or None where it is not shown, of flights by their Answers or None.
 
@@ -55,7 +59,7 @@ def clocks_of(answers, held_out=()):
             for one in every]
 
 
-def _usual_lag(told):
+def _usual_lag(told: Sequence[Answer]) -> float:
     lags, period = np.array([one.lag for one in told]), max(one.period for one in told)
     near = [lags[np.abs(lags - lag) <= _alike(period)] for lag in lags]
     most = max(near, key=len)
@@ -65,7 +69,7 @@ def _usual_lag(told):
     return max(0.0, usual) if shared else 0.0
 
 
-def controllers_own(lag, error, period):
+def controllers_own(lag: float, error: float, period: float) -> bool:
     """
     Return whether a lag and its standard error (s) may be those of a controller.
 
@@ -76,10 +80,10 @@ def controllers_own(lag, error, period):
             or abs(lag - period) <= SURE * error + _alike(period))
 
 
-def _worth(late):
+def _worth(late: float) -> float:
     return late if abs(late) > LEAST else 0.0
 
 
-def _alike(period):
+def _alike(period: float) -> float:
     seconds, samples = ALIKE
     return max(seconds, samples * period)

@@ -5,6 +5,7 @@
 from collections.abc import Iterable, Iterator, Sequence
 from collections.abc import Mapping as Pairs
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -63,8 +64,8 @@ def record_of(path: Path, table: Table, mapping: Mapping, notes: Sequence[str]) 
     start, seconds, columns, joined = join(path, streams)
     columns = velocity_in_world(path, columns)
     kept = _kept(table, chosen, columns, stamps[known], known, seconds, start)
-    info = {'name': path.name.partition('.')[0], 'source': str(path),
-            'notes': [*table.notes, *notes, *joined]}
+    info: dict[str, Any] = {'name': path.name.partition('.')[0], 'source': str(path),
+                            'notes': [*table.notes, *notes, *joined]}
     if abs(origin) < CLOCK:
         seconds = seconds + start * 1e-9 + origin
     else:
@@ -97,7 +98,7 @@ def _streams(path: Path, table: Table, mapping: Mapping, stamps: np.ndarray,
                              f'{", ".join(group)}; name all three')
         values = np.hstack([_values(table, chosen[name]) * factor_of(name, chosen[name].unit)
                             for name in group])
-        names = group
+        names: Sequence[str] = group
         if group in (RATE, FORCE):
             values = frames.body_vector(values, mapping.body)
         elif group == VELOCITY and chosen['vx'].frame == 'body':
@@ -130,9 +131,11 @@ def _streams(path: Path, table: Table, mapping: Mapping, stamps: np.ndarray,
         yield stream(source, names, values, between)
 
 
-def _attitude(path: Path, table: Table, mapping: Mapping) -> tuple[list[str], np.ndarray] | None:
+def _attitude(path: Path, table: Table, mapping: Mapping
+              ) -> tuple[Sequence[str], np.ndarray] | None:
     """Return (names of columns, quaternions (N, 4) of FLU in ENU) or None."""
     chosen = mapping.columns
+    names: Sequence[str]
     if ATTITUDE in chosen:
         names, q = chosen[ATTITUDE].names, _values(table, chosen[ATTITUDE])
         q = q if mapping.quaternion == 'wxyz' else q[:, [3, 0, 1, 2]]

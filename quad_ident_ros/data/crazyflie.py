@@ -7,16 +7,19 @@ Its frames are ENU and FLU, but for the pitch angle, whose sign is the other one
 variables and coordinate system in Bitcraze's documentation.
 """
 
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
+from typing import TypeAlias
 
 import numpy as np
 
 from quad_ident_ros.data.autopilot import known_names, outputs_stream, unit_quaternions
+from quad_ident_ros.data.mapping import Mapping
 from quad_ident_ros.data.motor_order import about_motors, quad
-from quad_ident_ros.data.readers.base import content_of
+from quad_ident_ros.data.readers.base import Content, content_of
 from quad_ident_ros.data.record import FlightRecord, QUATERNION
-from quad_ident_ros.data.streams import INTERPOLATED, join, SLOW, Stream
-from quad_ident_ros.data.usdlog import read_events
+from quad_ident_ros.data.streams import HELD, INTERPOLATED, join, SLOW, Stream
+from quad_ident_ros.data.usdlog import Event, read_events
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.gravity import GRAVITY
 from quad_ident_ros.model.attitude import quaternion_from_euler, rotate
@@ -31,24 +34,28 @@ MOTORS = about_motors(quad((1, -1), (-1, -1), (-1, 1), (1, 1)), 'the order of th
                       'duty16')
 
 
-def _of(group, *names):
+Make: TypeAlias = Callable[[np.ndarray], np.ndarray]
+Choices: TypeAlias = tuple[tuple[tuple[str, ...], Make], ...]
+
+
+def _of(group: str, *names: str) -> tuple[str, ...]:
     return tuple(f'{group}.{name}' for name in names)
 
 
-def _scaled(factor):
+def _scaled(factor: float | np.ndarray) -> Make:
     return lambda values: values * factor
 
 
-def _euler(degrees):
+def _euler(degrees: np.ndarray) -> np.ndarray:
     return quaternion_from_euler(np.radians(degrees * np.array([1.0, -1.0, 1.0])))
 
 
-def _turned(values):
+def _turned(values: np.ndarray) -> np.ndarray:
     """Return velocities in the world from those in the body and the quaternion beside them."""
     return rotate(unit_quaternions(values[:, 3:]), values[:, :3])
 
 
-def _unpacked(values):
+def _unpacked(values: np.ndarray) -> np.ndarray:
     """
     Return the quaternions (N, 4), scalar first, that are packed into one number each.
 
@@ -72,7 +79,7 @@ def _unpacked(values):
 
 
 _Q = ('q0', 'q1', 'q2', 'q3')
-SOURCES = (
+SOURCES: tuple[tuple[str, tuple[str, ...], str, Choices], ...] = (
     ('position', POSITION, INTERPOLATED, (
         (_of('stateEstimate', 'x', 'y', 'z'), _scaled(1.0)),
         (_of('kalman', 'stateX', 'stateY', 'stateZ'), _scaled(1.0)),
@@ -98,14 +105,14 @@ SOURCES = (
                                        _scaled(np.pi / 30.0)),)),
     ('battery', ('vbat',), SLOW, ((_of('pm', 'vbat'), _scaled(1.0)),
                                   (_of('pm', 'vbatMV'), _scaled(1e-3)))),
-    ('commands', OUTPUTS, None, (
+    ('commands', OUTPUTS, HELD, (
         (_of('motor', 'm1', 'm2', 'm3', 'm4'), _scaled(1.0)),
         (_of('pwm', 'm1_pwm', 'm2_pwm', 'm3_pwm', 'm4_pwm'), _scaled(1.0)))),
 )
 """Role, columns, how they are held, and by preference (variables, what makes columns of them)."""
 
 
-def read_crazyflie(path, mapping=None):
+def read_crazyflie(path: str | Path, mapping: Mapping | None = None) -> FlightRecord:
     """
     Return the FlightRecord of a micro-SD log.
 
@@ -117,10 +124,14 @@ def read_crazyflie(path, mapping=None):
     path = Path(path)
     mapping = known_names(path, 'a Crazyflie log', mapping)
     events, notes = read_events(path)
-    streams, used = [], set()
+    streams: list[Stream] = []
+    used: set[str] = set()
     for _, columns, between, choices in SOURCES:
-        event, names, make = next(_there(events, choices), (None, (), None))
-        if event is None or (columns == ('vbat',) and len(event.stamps) < 2):
+        found = next(_there(events, choices), None)
+        if found is None:
+            continue
+        event, names, make = found
+        if columns == ('vbat',) and len(event.stamps) < 2:
             continue
         used.update(names)
         with np.errstate(all='ignore'):     # values of damaged rows
@@ -140,15 +151,15 @@ def read_crazyflie(path, mapping=None):
     if mapping.actuators is not None and 'output1' not in has:
         raise InputError(f'{path}: has no motor.m1 to motor.m4 for the actuators of the mapping; '
                          'log them, or leave actuators out')
-    start, t, columns, left_out = join(path, streams)
+    start, t, joined, left_out = join(path, streams)
     unread = [name for name in _names(events) if name not in used]
-    notes = [*notes, *([f'variables that are not read: {_listed(unread)}'] if unread else []),
-             *([ORDER] if has & {'output1', 'rotor1'} else []), *left_out]
-    return FlightRecord(t, columns, {'name': path.stem, 'source': str(path), 'start_ns': start,
-                                     'notes': notes, 'motors': MOTORS})
+    said = [*notes, *([f'variables that are not read: {_listed(unread)}'] if unread else []),
+            *([ORDER] if has & {'output1', 'rotor1'} else []), *left_out]
+    return FlightRecord(t, joined, {'name': path.stem, 'source': str(path), 'start_ns': start,
+                                    'notes': said, 'motors': MOTORS})
 
 
-def contents(path):
+def contents(path: str | Path) -> list[Content]:
     """Return the Content of each kind of event in a micro-SD log; errors of read_events."""
     events, _ = read_events(path)
     origin = min(int(event.stamps.min()) for event in events if len(event.stamps))
@@ -158,7 +169,7 @@ def contents(path):
             for event in events]
 
 
-def _roles(event):
+def _roles(event: Event) -> list[str]:
     """Return the roles that an event has the variables for; position and attitude are a pose."""
     roles = list(dict.fromkeys(role for role, _, _, choices in SOURCES
                                if next(_there([event], choices), None)))
@@ -167,7 +178,8 @@ def _roles(event):
     return roles
 
 
-def _there(events, choices):
+def _there(events: Iterable[Event], choices: Choices
+           ) -> Iterator[tuple[Event, tuple[str, ...], Make]]:
     """Yield (event, names, make) of the choices whose variables an event with samples has."""
     for names, make in choices:
         for event in sorted(events, key=lambda event: -len(event.stamps)):
@@ -175,10 +187,10 @@ def _there(events, choices):
                 yield event, names, make
 
 
-def _names(events):
+def _names(events: Iterable[Event]) -> list[str]:
     return list(dict.fromkeys(name for event in events for name in event.values))
 
 
-def _listed(names, most=8):
+def _listed(names: Sequence[str], most: int = 8) -> str:
     more = f' and {len(names) - most} more' if len(names) > most else ''
     return ', '.join(name[:40] for name in names[:most]) + more if names else 'none'

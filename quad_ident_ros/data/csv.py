@@ -3,17 +3,20 @@
 """Flight records as CSV, plain or gzip: reading, writing, and appending while recording."""
 
 from collections import Counter
+from collections.abc import Iterable, Sequence
 import csv
 import gzip
 import io
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from quad_ident_ros.data.counted import counted
 from quad_ident_ros.data.cutting import deletion, keeping
 from quad_ident_ros.data.plain_numbers import plain_numbers
-from quad_ident_ros.data.record import faulty, find_fault, FlightRecord, SPOILT, unit
+from quad_ident_ros.data.record import Fault, faulty, find_fault, FlightRecord, SPOILT, unit
 from quad_ident_ros.data.text_lines import error_at, rows_of
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.whole_file import replacing
@@ -22,7 +25,7 @@ _PENDING_BYTES = 1 << 16    # that are written at once: a call for each line wou
 _NAMED = 8                  # columns that a message names
 
 
-def read_csv(path, spoilt=False):
+def read_csv(path: str | Path, spoilt: bool = False) -> FlightRecord:
     """
     Return the FlightRecord of a .csv or .csv.gz file.
 
@@ -36,6 +39,7 @@ def read_csv(path, spoilt=False):
     path = Path(path)
     plain = plain_numbers(path, skip=1)
     names = _header(path, plain.head[0]) if plain else []
+    lines: Sequence[int] | np.ndarray
     if plain and plain.values.shape[1] == len(names):
         lines, truncated = plain.lines, plain.truncated
         columns = plain.columns(names)
@@ -50,7 +54,8 @@ def read_csv(path, spoilt=False):
                          'give at least 2')
     _refuse_empty(path, columns)
     t = columns.pop('t')
-    info = {'name': path.name.removesuffix('.gz').removesuffix('.csv'), 'source': str(path)}
+    info: dict[str, Any] = {'name': path.name.removesuffix('.gz').removesuffix('.csv'),
+                            'source': str(path)}
     fault = find_fault(t, columns)
     if fault is not None:
         wrong = faulty(t, columns)
@@ -62,7 +67,7 @@ def read_csv(path, spoilt=False):
     return FlightRecord(t, columns, info | ({'truncated': True} if truncated else {}))
 
 
-def _refuse_empty(path, columns):
+def _refuse_empty(path: Path, columns: dict[str, np.ndarray]) -> None:
     """Raise InputError where known columns have no number in any line."""
     empty = [name for name, values in columns.items()
              if unit(name) is not None and not np.isfinite(values).any()]
@@ -73,23 +78,24 @@ def _refuse_empty(path, columns):
                             'fill in the values'))
 
 
-def _columns(names):
+def _columns(names: Sequence[str]) -> str:
     """Return names of columns in words."""
     shown = ', '.join(repr(name[:40]) for name in names[:_NAMED])
     more = f' and {len(names) - _NAMED} more' if len(names) > _NAMED else ''
     return f'column{"s" * (len(names) > 1)} {shown}{more}'
 
 
-def _faulty(path, lines, t, wrong, fault):
+def _faulty(path: Path, lines: Sequence[int] | np.ndarray, t: np.ndarray, wrong: np.ndarray,
+            fault: Fault) -> InputError:
     """Return the error of a Fault; wrong (N,) bool: all samples that have to go, on lines (N,)."""
     part = keeping(t, ~wrong)
-    ways = [deletion([lines[k] for k in np.flatnonzero(wrong)], len(wrong)), fault.remedy,
+    ways = [deletion([lines[k] for k in np.flatnonzero(wrong).tolist()], len(wrong)), fault.remedy,
             f'take a part: {part}' if part else '']
     return error_at(path, lines[fault.sample], fault.column, fault.problem,
                     ', or '.join(filter(None, ways)))
 
 
-def _times_of(t, wrong):
+def _times_of(t: np.ndarray, wrong: np.ndarray) -> list[float]:
     """Return the times (s) of wrong samples (N,): between those of the good ones around them."""
     good = np.flatnonzero(~wrong)
     places = np.flatnonzero(wrong)
@@ -99,7 +105,7 @@ def _times_of(t, wrong):
     return (0.5 * (known[after - 1] + known[after])).tolist()
 
 
-def write_csv(path, record):
+def write_csv(path: str | Path, record: FlightRecord) -> None:
     """
     Write a flight record to a .csv or .csv.gz file; every number reads back as it was.
 
@@ -124,7 +130,7 @@ class CsvAppender:
     Raises OSError where the file cannot be made, InputError for column names that cannot be.
     """
 
-    def __init__(self, path, columns):
+    def __init__(self, path: str | Path, columns: Iterable[str]) -> None:
         """Make the file and write its header."""
         self._columns = list(columns)
         if 't' not in self._columns or len(set(self._columns)) != len(self._columns):
@@ -136,7 +142,7 @@ class CsvAppender:
         self._failed = False
         self.flush()
 
-    def append(self, rows):
+    def append(self, rows: ArrayLike) -> None:
         """Add samples, (k, m) for m columns; InputError for another shape, OSError as flush."""
         rows = np.asarray(rows, dtype=float)
         if rows.ndim != 2 or rows.shape[1] != len(self._columns):
@@ -146,14 +152,14 @@ class CsvAppender:
         if len(self._pending) > _PENDING_BYTES:
             self.flush()
 
-    def flush(self):
+    def flush(self) -> None:
         """Hand all samples to the operating system; OSError where it does not take them."""
         self._failed = True
         while self._pending:
             self._pending = self._pending[self._file.write(self._pending):]
         self._failed = False
 
-    def close(self):
+    def close(self) -> None:
         """Flush and close; after a failed flush only close, without an error."""
         try:
             if not self._failed and not self._file.closed:
@@ -161,16 +167,16 @@ class CsvAppender:
         finally:
             self._file.close()
 
-    def __enter__(self):
+    def __enter__(self) -> 'CsvAppender':
         """Return the appender itself."""
         return self
 
-    def __exit__(self, *_):
+    def __exit__(self, *_: object) -> None:
         """Close the file."""
         self.close()
 
 
-def _header(path, row):
+def _header(path: Path, row: str) -> list[str]:
     """Return the column names of the header line; '' for columns without a name."""
     try:
         names = [name.strip() for name in next(csv.reader([row], strict=True), [''])]
@@ -188,11 +194,13 @@ def _header(path, row):
     return names
 
 
-def _parse_any(path, rows, names):
+def _parse_any(path: Path, rows: Sequence[str], names: Sequence[str]
+               ) -> tuple[list[int], dict[str, np.ndarray]]:
     """Return line numbers and the columns of numbers; InputError if the file is not a table."""
     lines, cells = _cells(path, rows, names)
     columns = {}
-    values = zip(*cells, strict=True) if cells else [()] * len(names)
+    values: Iterable[tuple[str, ...]] = (zip(*cells, strict=True) if cells else
+                                         [()] * len(names))
     for name, column in zip(names, values, strict=True):
         numbers = [_number(cell, unit(name) is None) for cell in column]
         if None not in numbers:
@@ -208,7 +216,8 @@ def _parse_any(path, rows, names):
     return lines, columns
 
 
-def _cells(path, rows, names):
+def _cells(path: Path, rows: Sequence[str], names: Sequence[str]
+           ) -> tuple[list[int], list[list[str]]]:
     """Return the line number and the cells of each sample."""
     lines, cells, wrong = [], [], []
     reader = csv.reader(rows, strict=True)
@@ -227,7 +236,7 @@ def _cells(path, rows, names):
     return lines, cells
 
 
-def refuse_uneven(path, wrong, width, right):
+def refuse_uneven(path: Path, wrong: Sequence[tuple[int, int]], width: int, right: int) -> None:
     """
     Raise InputError where lines of a table have other numbers of cells than its header.
 
@@ -241,7 +250,7 @@ def refuse_uneven(path, wrong, width, right):
                        'complete the line' + (f', or {delete}' if delete else ''))
 
 
-def _number(cell, may_be_empty):
+def _number(cell: str, may_be_empty: bool) -> float | None:
     """Return the number in a cell; nan for an empty one that may be; None for no number."""
     cell = cell.strip()
     if may_be_empty and not cell:
@@ -253,14 +262,14 @@ def _number(cell, may_be_empty):
         return None
 
 
-def _header_line(names):
+def _header_line(names: Iterable[str]) -> bytes:
     """Return the header line of column names, bytes."""
     text = io.StringIO()
     csv.writer(text, lineterminator='\n').writerow(names)
     return text.getvalue().encode()
 
 
-def _lines(columns):
+def _lines(columns: Iterable[np.ndarray]) -> bytes:
     """Return the CSV lines of a list of columns (N,), bytes."""
     cells = [map(repr, np.asarray(column).tolist()) for column in columns]
     return ''.join(f'{line}\n' for line in map(','.join, zip(*cells, strict=True))).encode()

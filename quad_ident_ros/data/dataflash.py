@@ -9,14 +9,19 @@ damaged. Source: ArduPilot's AP_Logger; pymavlink's DFReader.
 """
 
 from array import array
+from collections.abc import Container
 from dataclasses import dataclass
 import mmap
 from pathlib import Path
 import struct
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from quad_ident_ros.errors import InputError
+
+if TYPE_CHECKING:
+    from pymavlink.DFReader import DFFormat
 
 MAGIC = b'\xa3\x95\x80'     # a definition is the first message of a log
 
@@ -31,15 +36,15 @@ class Messages:
 
     name: str
     letters: str
-    fields: tuple
+    fields: tuple[str, ...]
     rows: np.ndarray
-    factors: dict
+    factors: dict[str, float]
 
-    def __len__(self):
+    def __len__(self) -> int:
         """Return the number of messages."""
         return len(self.rows)
 
-    def values(self, field):
+    def values(self, field: str) -> np.ndarray:
         """Return the values of a numerical field, (n,) float64."""
         with np.errstate(all='ignore'):
             values = self.rows[field].astype(float)
@@ -47,17 +52,18 @@ class Messages:
             # As pymavlink does it, for the last bit: 1e-7 is no number of binary digits.
             return values if factor is None else values / (1.0 / factor)
 
-    def texts(self, field):
+    def texts(self, field: str) -> list[str]:
         """Return the values of a text field, list of str."""
         return [value.split(b'\0')[0].decode('utf-8', 'replace')
                 for value in self.rows[field].tolist()]
 
-    def only(self, keep):
+    def only(self, keep: np.ndarray) -> 'Messages':
         """Return the messages where keep (n,) bool holds."""
         return Messages(self.name, self.letters, self.fields, self.rows[keep], self.factors)
 
 
-def read_messages(path, wanted=None):
+def read_messages(path: str | Path, wanted: Container[str] | None = None
+                  ) -> tuple[dict[str, Messages], int]:
     """
     Return (type name -> Messages, bytes that are no message) of a log.
 
@@ -85,7 +91,7 @@ def read_messages(path, wanted=None):
     return found, damaged
 
 
-def _index(data):
+def _index(data: mmap.mmap) -> tuple[dict[int, 'DFFormat'], dict[int, 'array[int]'], int]:
     """Return type -> DFFormat, type -> starts of its messages, and the count of stray bytes."""
     formats, starts = {}, {kind: array('q') for kind in range(256)}
     lengths = [0] * 256
@@ -112,7 +118,7 @@ def _index(data):
     return formats, starts, damaged
 
 
-def _format(body):
+def _format(body: bytes) -> 'DFFormat | None':
     """Return pymavlink's definition of a type, or None where it is damaged."""
     from pymavlink.DFReader import DFFormat, FORMAT_TO_STRUCT
     kind, length, name, letters, fields = struct.unpack('<BB4s16s64s', body)
@@ -123,14 +129,14 @@ def _format(body):
     return DFFormat(kind, name.decode(), length, letters.decode(), fields.decode())
 
 
-def _whole(made):
+def _whole(made: 'DFFormat') -> bool:
     """Return whether a definition fits together, so that its messages can be decoded."""
     return (len(made.columns) == len(made.format) == len(made.colhash) > 0
             and all(made.columns)
             and made.len == _HEADER + struct.calcsize(made.msg_struct))
 
 
-def _messages(raw, made, starts):
+def _messages(raw: np.ndarray, made: 'DFFormat', starts: np.ndarray) -> Messages:
     """Return the Messages of a definition that start at bytes of raw."""
     from pymavlink.DFReader import FORMAT_TO_STRUCT
     layout = [('header', 'V3')]

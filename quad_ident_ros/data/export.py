@@ -2,15 +2,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """The writer: a flight record as CSV or as a bag that any ROS 2 tool can show."""
 
+from collections.abc import Callable, Sequence
 import os
 from pathlib import Path
 import shutil
+from typing import Any
 
 import numpy as np
 
 from quad_ident_ros.data.bag import BagWriter, serialize
 from quad_ident_ros.data.csv import write_csv
-from quad_ident_ros.data.record import EULER, INPUTS, MOMENTS, QUATERNION
+from quad_ident_ros.data.record import EULER, FlightRecord, INPUTS, MOMENTS, QUATERNION
 from quad_ident_ros.data.table import record_table
 from quad_ident_ros.data.topics import arm_of, ARRAY_TYPE, EXACT_TOPIC, FLIGHT_TOPICS
 from quad_ident_ros.errors import InputError
@@ -19,7 +21,8 @@ from quad_ident_ros.model.attitude import conjugate, rotate
 VECTOR = 'geometry_msgs/msg/Vector3Stamped'
 
 
-def save(path, record, on_progress=None):
+def save(path: str | Path, record: FlightRecord, on_progress: Callable[[float], None] | None = None
+         ) -> None:
     """
     Write a flight record to .csv, .csv.gz, .mcap, or a new rosbag2 folder (no ending).
 
@@ -48,7 +51,8 @@ def save(path, record, on_progress=None):
                          'ending, as the folder of a bag; name one of these')
 
 
-def write_bag(path, record, on_progress=None):
+def write_bag(path: str | Path, record: FlightRecord,
+              on_progress: Callable[[float], None] | None = None) -> None:
     """Write a flight record to a new rosbag2 folder; arguments and errors of save."""
     start = int(record.info.get('start_ns', 0))
     shift = (record.t - record.t[0]) * 1e9
@@ -74,7 +78,7 @@ def write_bag(path, record, on_progress=None):
         raise
 
 
-def _topics(record):
+def _topics(record: FlightRecord) -> list[tuple[str, str, np.ndarray]]:
     """Return (name, type, values (N, k)) of the topics that a record has the columns for."""
     found = []
     kinds = {name: topic.type for name, topic in FLIGHT_TOPICS.items()}
@@ -105,7 +109,7 @@ def _topics(record):
     return found
 
 
-def _message(name, kind, stamp, values):
+def _message(name: str, kind: str, stamp: int, values: Sequence[float]) -> dict[str, Any]:
     """Return the fields of a message as nested dicts."""
     if kind == ARRAY_TYPE:
         return _array(np.array(values), (name,))
@@ -130,7 +134,7 @@ def _message(name, kind, stamp, values):
     return {'header': header, 'vector': dict(zip('xyz', values, strict=True))}
 
 
-def _array(table, labels):
+def _array(table: np.ndarray, labels: Sequence[str]) -> dict[str, Any]:
     sizes, stride, dims = table.shape, table.size, []
     for label, size in zip(labels, sizes, strict=True):
         dims.append({'label': label, 'size': size, 'stride': stride})

@@ -2,10 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Flight records from bags of others: a mapping says which topic is what, or their types do."""
 
+from collections.abc import Mapping as Pairs
+from collections.abc import Sequence
+from pathlib import Path
+
 import numpy as np
 
 from quad_ident_ros.data.bag_file import BagFile
 from quad_ident_ros.data.bag_guess import guessed
+from quad_ident_ros.data.mapping import Mapping
 from quad_ident_ros.data.message_roles import is_tf
 from quad_ident_ros.data.px4_resets import split_at_resets
 from quad_ident_ros.data.record import FlightRecord, QUATERNION, SPOILT
@@ -18,7 +23,8 @@ from quad_ident_ros.model.attitude import rotate
 ONE_CLOCK = 1.0     # s between a stamp and its receipt that vary so much are of several clocks
 
 
-def read_mapped_bag(path, mapping, spoilt=False):
+def read_mapped_bag(path: str | Path, mapping: Mapping, spoilt: bool = False
+                    ) -> list[FlightRecord]:
     """
     Return the FlightRecords in a bag of ROS 1 or ROS 2 whose topics a mapping names.
 
@@ -30,7 +36,7 @@ def read_mapped_bag(path, mapping, spoilt=False):
     in the info, see record.SPOILT.
     Raises InputError that names file, topic and message.
     """
-    notes = []
+    notes: list[str] = []
     with BagFile(path) as bag:
         if not mapping.topics:
             mapping, notes = guessed(path, bag, mapping)
@@ -64,13 +70,13 @@ def read_mapped_bag(path, mapping, spoilt=False):
         for part, stream in zip(parts, streams, strict=True) if part.counters})
 
 
-def _by_topic(parts, types):
+def _by_topic(parts: Sequence[TopicPart], types: Pairs[str, str]) -> dict[str, list[TopicPart]]:
     """
     Return topic -> the parts that read it.
 
     Those of transforms read the topic of those that do not change, too. types: by topic.
     """
-    found = {}
+    found: dict[str, list[TopicPart]] = {}
     for part in parts:
         topic = part.source.topic
         beside = static_topic(topic)
@@ -80,20 +86,22 @@ def _by_topic(parts, types):
     return found
 
 
-def _spoilt(parts, streams, start):
+def _spoilt(parts: Sequence[TopicPart], streams: Sequence[Stream], start: int
+            ) -> dict[str, list[list[object]]]:
     """Return the info of the samples that were left out as spoilt; start: of the record, ns."""
-    told = [[(int(stream.stamps[k]) - start) * 1e-9, part.not_unit(k)]
-            for part, stream in zip(parts, streams, strict=True) for k in part.spoilt]
+    told: list[list[object]] = [
+        [(int(stream.stamps[k]) - start) * 1e-9, part.not_unit(k)]
+        for part, stream in zip(parts, streams, strict=True) for k in part.spoilt]
     return {SPOILT: told} if told else {}
 
 
-def without_stamps(topic):
+def without_stamps(topic: str) -> str:
     """Return the note on a topic whose messages have no stamp."""
     return (f'the messages of topic {topic} have no stamps; their times of receipt are used, '
             'which are later by what transport takes')
 
 
-def velocity_in_world(path, columns):
+def velocity_in_world(path: str | Path, columns: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """Return columns whose velocity in body axes is turned into the world; raises InputError."""
     if BODY_VELOCITY[0] in columns:
         if not all(name in columns for name in QUATERNION):
@@ -106,7 +114,12 @@ def velocity_in_world(path, columns):
     return columns
 
 
-def _fixed(parts):
+def _fixed(parts: Sequence[TopicPart]) -> set[str] | None:
     """Return the fields that say how parts are read, or None where they are read one by one."""
-    each = [part.fixed for part in parts]
-    return None if None in each else {name for names in each for name in names}
+    found: set[str] = set()
+    for part in parts:
+        names = part.fixed
+        if names is None:
+            return None
+        found.update(names)
+    return found

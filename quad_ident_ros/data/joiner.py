@@ -3,13 +3,21 @@
 """Joining of topics into rows by stamp, with an account of everything that went wrong."""
 
 from collections import deque
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 import heapq
 import math
+from typing import TypeAlias
 
 # A stamp that goes back by more than this is a clock that restarted, not a late message.
 RESTART_NS = 1_000_000_000
 REMEMBERED = 2000   # emitted stamps, kept to distinguish a duplicate from a late message
+
+Row: TypeAlias = tuple[int, tuple[float, ...]]
+"""A stamp in ns, and the values of all topics at it."""
+
+_Key: TypeAlias = tuple[int, int]
+_Parts: TypeAlias = dict[str, Sequence[float] | None]
 
 
 @dataclass
@@ -26,7 +34,7 @@ class Counts:
     count that the sender announced or else by the sample period.
     """
 
-    received: dict = field(default_factory=dict)
+    received: dict[str, int] = field(default_factory=dict)
     joined: int = 0
     dropped: int = 0
     late: int = 0
@@ -39,12 +47,12 @@ class Counts:
     restarts: int = 0
     missing: int = 0
 
-    def add(self, more):
+    def add(self, more: Mapping[str, int]) -> None:
         """Add what became of further messages, {name of a count: how many}."""
         for name, count in more.items():
             setattr(self, name, getattr(self, name) + count)
 
-    def problems(self):
+    def problems(self) -> dict[str, int]:
         """Return the counts of what went wrong that are not zero."""
         return {name: count for name, count in vars(self).items()
                 if name not in ('received', 'joined') and count}
@@ -59,22 +67,22 @@ class Joiner:
     Args: topics: names that a row needs.
     """
 
-    def __init__(self, topics, hold=20, most=20000):
+    def __init__(self, topics: Iterable[str], hold: int = 20, most: int = 20000) -> None:
         self.topics = tuple(topics)
         self.counts = Counts(received=dict.fromkeys(self.topics, 0))
         self._most = most
         # A row's key is (era, stamp): an era ends where the clock restarts.
-        self._pending = {}
-        self._keys = []
+        self._pending: dict[_Key, _Parts] = {}
+        self._keys: list[_Key] = []
         self._last = dict.fromkeys(self.topics, (0, -1))
-        self._before = dict.fromkeys(self.topics)
-        self._newest = {name: deque(maxlen=hold) for name in self.topics}
+        self._before: dict[str, int | None] = dict.fromkeys(self.topics)
+        self._newest: dict[str, deque[_Key]] = {name: deque(maxlen=hold) for name in self.topics}
         self._emitted = (0, -1)
-        self._recent = deque(maxlen=REMEMBERED)
+        self._recent: deque[_Key] = deque(maxlen=REMEMBERED)
 
-    def add(self, topic, stamp_ns, values):
+    def add(self, topic: str, stamp_ns: int, values: Sequence[float]) -> list[Row]:
         """
-        Take a message's values (tuple of float) and return the rows that it completes.
+        Take a message's values and return the rows that it completes.
 
         A row is (stamp_ns, values of all topics in their order). Rows come in rising order of
         stamps; after a restart of the clock they begin again.
@@ -96,24 +104,24 @@ class Joiner:
             else:
                 counts.late += 1
             return []
-        if not all(map(math.isfinite, values)):
+        finite = all(map(math.isfinite, values))
+        if not finite:
             counts.nan += 1
-            values = None
         if parts is None:
             parts = self._pending[key] = {}
             heapq.heappush(self._keys, key)
-        parts[topic] = values
+        parts[topic] = values if finite else None
         return self._ready(self._given_up)
 
-    def has_reached(self, stamp_ns):
+    def has_reached(self, stamp_ns: int) -> bool:
         """Whether each topic has delivered this stamp or a later one."""
         return all(stamp >= stamp_ns for _, stamp in self._last.values())
 
-    def drain(self):
+    def drain(self) -> list[Row]:
         """Return the rows that are complete, giving up those that are not."""
         return self._ready(lambda key, parts: True)
 
-    def _place(self, topic, stamp):
+    def _place(self, topic: str, stamp: int) -> _Key:
         """Return the key of a message and note where its topic is."""
         era, last = self._last[topic]
         before = self._before[topic]
@@ -138,23 +146,23 @@ class Joiner:
             era = newest
         return self._move(topic, (era, stamp))
 
-    def _move(self, topic, key):
+    def _move(self, topic: str, key: _Key) -> _Key:
         if key != self._last[topic]:
             self._newest[topic].append(key)
         self._last[topic] = key
         return key
 
-    def _given_up(self, key, parts):
+    def _given_up(self, key: _Key, parts: _Parts) -> bool:
         return len(self._pending) > self._most or all(
             self._last[topic][0] > key[0] or self._has_gone_on(topic, key)
             for topic in self.topics if topic not in parts)
 
-    def _has_gone_on(self, topic, key):
+    def _has_gone_on(self, topic: str, key: _Key) -> bool:
         """Whether a topic has delivered `hold` stamps after a key."""
         newest = self._newest[topic]
         return len(newest) == newest.maxlen and newest[0] > key
 
-    def _ready(self, given_up):
+    def _ready(self, given_up: Callable[[_Key, _Parts], bool]) -> list[Row]:
         rows = []
         while self._keys:
             key = self._keys[0]
@@ -173,7 +181,7 @@ class Joiner:
                 self._recent.append(key)
             spoilt = any(value is None for value in parts.values())
             if complete and not spoilt:
-                rows.append((key[1], tuple(v for name in self.topics for v in parts[name])))
+                rows.append((key[1], tuple(v for name in self.topics for v in parts[name] or ())))
             elif not spoilt:
                 self.counts.dropped += 1
         self.counts.joined += len(rows)

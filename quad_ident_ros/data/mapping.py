@@ -5,9 +5,12 @@
 from collections.abc import Mapping as Pairs
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 import re
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from quad_ident_ros import resources, schema
 from quad_ident_ros.data.frames import BODIES, WORLDS
@@ -63,11 +66,11 @@ class Actuators:
     thrust, its square is.
     """
 
-    order: tuple = ()
+    order: tuple[int, ...] = ()
     kind: str = 'speed'
-    minimum: float = None
-    maximum: float = None
-    speeds: tuple = None
+    minimum: float | None = None
+    maximum: float | None = None
+    speeds: tuple[float, ...] | None = None
     curve: str = 'linear'
 
 
@@ -97,7 +100,7 @@ class Column:
     record; frame: of a velocity, world or body.
     """
 
-    names: tuple
+    names: tuple[str, ...]
     unit: str = ''
     frame: str = 'world'
 
@@ -113,22 +116,22 @@ class Mapping:
     table; quaternion: order of those of q, wxyz or xyzw; separator of a table, '' if not given.
     """
 
-    topics: Pairs = field(default_factory=dict)
+    topics: Pairs[str, Source] = field(default_factory=dict)
     world: str = 'ENU'
     body: str = 'FLU'
-    instances: Pairs = field(default_factory=dict)
-    actuators: Actuators = None
-    columns: Pairs = field(default_factory=dict)
+    instances: Pairs[str, int] = field(default_factory=dict)
+    actuators: Actuators | None = None
+    columns: Pairs[str, Column] = field(default_factory=dict)
     quaternion: str = 'wxyz'
     separator: str = ''
 
 
-def load_mapping(path):
+def load_mapping(path: str | Path) -> Mapping:
     """Return the Mapping of a file; raises InputError that names file and key."""
     return mapping_from(resources.read_yaml(path), str(path))
 
 
-def mapping_from(data, where):
+def mapping_from(data: Any, where: str) -> Mapping:
     """Return the Mapping that the content of a mapping file describes; raises InputError."""
     schema.check_keys(where, data, ('topics', 'world', 'body', 'instances', 'actuators',
                                     'columns', 'quaternion', 'separator'))
@@ -151,7 +154,7 @@ def mapping_from(data, where):
         schema.choice(f'{where}: separator', data.get('separator', ''), ('', ',', ';', '\t', ' ')))
 
 
-def actuators_from(where, data):
+def actuators_from(where: str, data: Any) -> Actuators:
     """Return the Actuators that the section `actuators` of a mapping says; raises InputError."""
     schema.check_keys(where, data, ('order', 'kind', 'minimum', 'maximum', 'speeds', 'curve'),
                       ('kind',))
@@ -182,7 +185,7 @@ def actuators_from(where, data):
     return Actuators(order, kind, minimum, maximum, speeds, curve)
 
 
-def actuators_to_mapping(actuators):
+def actuators_to_mapping(actuators: Actuators) -> dict[str, object]:
     """Return the section `actuators` of a mapping that says Actuators."""
     said = {'kind': actuators.kind, 'order': list(actuators.order), 'minimum': actuators.minimum,
             'maximum': actuators.maximum, 'speeds': actuators.speeds and list(actuators.speeds)}
@@ -225,7 +228,8 @@ def unit_of(name: str) -> str:
     return '' if name == ATTITUDE or _OUTPUT.fullmatch(name) else unit(name) or ''
 
 
-def rotor_speeds(where, outputs, actuators, vehicle):
+def rotor_speeds(where: str, outputs: ArrayLike, actuators: Actuators, vehicle: Vehicle | None
+                 ) -> np.ndarray:
     """
     Return rotor speeds in rad/s, (N, n), in the order of the vehicle file.
 
@@ -239,12 +243,14 @@ def rotor_speeds(where, outputs, actuators, vehicle):
         return chosen * TO_SPEED[actuators.kind]
     found = motors_of(where, actuators, vehicle)
     if not found.whole:
+        assert vehicle is not None      # else the actuators have speeds
         raise InputError(f'{where}: actuators: the rotor speed at the maximum is not known; give '
                          f'speeds: [low, high] in rad/s, or {vehicle.name} a speed_max (rad/s)')
     return motors.rotor_speeds(found, chosen, _thrust_coefficient(vehicle))
 
 
-def chosen_outputs(where, outputs, actuators, vehicle):
+def chosen_outputs(where: str, outputs: ArrayLike, actuators: Actuators, vehicle: Vehicle | None
+                   ) -> np.ndarray:
     """Return the outputs (N, n) of the rotors by the order of Actuators; as rotor_speeds."""
     outputs = np.asarray(outputs, float)
     count = outputs.shape[1]
@@ -258,7 +264,7 @@ def chosen_outputs(where, outputs, actuators, vehicle):
     return outputs[:, [number - 1 for number in order]]
 
 
-def motors_of(where, actuators, vehicle):
+def motors_of(where: str, actuators: Actuators, vehicle: Vehicle | None) -> Motors:
     """
     Return the model.motors.Motors that Actuators stand for.
 
@@ -268,32 +274,40 @@ def motors_of(where, actuators, vehicle):
     """
     if actuators.kind in TO_SPEED:
         return Motors(actuators.kind)
-    limits = {'kind': actuators.kind, **_limits(where, actuators, vehicle)}
+    minimum, maximum = _limits(where, actuators, vehicle)
     speeds = actuators.speeds
-    if speeds is None and vehicle is None:
-        raise InputError(f'{where}: actuators: the rotor speeds at minimum and maximum are not '
-                         'known; give speeds: [low, high] in rad/s, or a vehicle with them')
-    if speeds is None and vehicle.motors is not None and vehicle.motors.gives:
-        return motors.completed(replace(vehicle.motors, **limits), vehicle.thrust_coefficient,
-                                vehicle.speed_min, vehicle.speed_max)
-    if speeds is None and not np.isfinite(vehicle.speed_max):
-        return Motors(**limits, gives='speed' if actuators.curve == 'linear' else 'thrust')
-    speeds = speeds or (vehicle.speed_min, vehicle.speed_max)
+    if speeds is None:
+        if vehicle is None:
+            raise InputError(f'{where}: actuators: the rotor speeds at minimum and maximum are '
+                             'not known; give speeds: [low, high] in rad/s, or a vehicle with '
+                             'them')
+        if vehicle.motors is not None and vehicle.motors.gives:
+            told = replace(vehicle.motors, kind=actuators.kind, minimum=minimum, maximum=maximum)
+            return motors.completed(told, vehicle.thrust_coefficient, vehicle.speed_min,
+                                    vehicle.speed_max)
+        if not np.isfinite(vehicle.speed_max):
+            return Motors(actuators.kind, minimum, maximum,
+                          gives='speed' if actuators.curve == 'linear' else 'thrust')
+        speeds = vehicle.speed_min, vehicle.speed_max
     low, high = speeds
     if actuators.curve == 'linear':
-        return Motors(**limits, gives='speed', offset=low, gain=high - low)
+        return Motors(actuators.kind, minimum, maximum, gives='speed', offset=low,
+                      gain=high - low)
     k = _thrust_coefficient(vehicle)
-    return Motors(**limits, gives='thrust', offset=k * low ** 2, gain=k * (high ** 2 - low ** 2))
+    return Motors(actuators.kind, minimum, maximum, gives='thrust', offset=k * low ** 2,
+                  gain=k * (high ** 2 - low ** 2))
 
 
-def _limits(where: str, actuators: Actuators, vehicle: Vehicle | None) -> dict[str, float]:
-    """Return the outputs at the lowest and at the full speed, by name; InputError."""
+def _limits(where: str, actuators: Actuators, vehicle: Vehicle | None) -> tuple[float, float]:
+    """Return the outputs at the lowest and at the full speed; InputError."""
     said = {key: getattr(actuators, key) for key in ('minimum', 'maximum')}
     told = None if vehicle is None else vehicle.motors
-    usual = dict(zip(said, KINDS[actuators.kind], strict=True))
+    ends = KINDS[actuators.kind]
+    assert ends is not None     # outputs that are speeds have no map
+    usual = dict(zip(said, ends, strict=True))
     if told is not None and told.kind == actuators.kind:
         usual = {key: getattr(told, key) for key in said}
-    elif (told is not None and told.gives and actuators.speeds is None
+    elif (vehicle is not None and told is not None and told.gives and actuators.speeds is None
           and None in said.values()):
         raise InputError(f'{where}: actuators: kind: {actuators.kind}, and the map of the motors '
                          f'of {vehicle.name} is of {told.kind}; give minimum and maximum, the '
@@ -302,15 +316,15 @@ def _limits(where: str, actuators: Actuators, vehicle: Vehicle | None) -> dict[s
     if limits['maximum'] <= limits['minimum']:
         raise InputError(f'{where}: actuators: maximum: {limits["maximum"]:g} is not above the '
                          f'minimum, {limits["minimum"]:g}')
-    return limits
+    return limits['minimum'], limits['maximum']
 
 
-def _thrust_coefficient(vehicle):
+def _thrust_coefficient(vehicle: Vehicle | None) -> float:
     """Return that of a vehicle; without one it plays no part."""
     return 1.0 if vehicle is None else vehicle.thrust_coefficient
 
 
-def _source(where, role, entry):
+def _source(where: str, role: str, entry: Any) -> Source:
     known = ('topic', 'field', *{'velocity': ('frame',), 'pose': ('child',)}.get(role, ()),
              *(('unit',) if role in UNIT_OF_ROLE else ()))
     schema.check_keys(where, entry, known, ('topic',))
@@ -320,7 +334,8 @@ def _source(where, role, entry):
             raise InputError(f'{where}: {key}: expected a name, got {schema.shown(value)}')
     frame = (schema.choice(f'{where}: frame', entry['frame'], ('body', 'world'))
              if 'frame' in entry else '')
-    units = ('rad/s', 'rpm') if role == 'rotors' else tuple(UNITS.get(UNIT_OF_ROLE.get(role), ()))
+    units = ('rad/s', 'rpm') if role == 'rotors' else tuple(
+        UNITS.get(UNIT_OF_ROLE.get(role, ''), ()))
     said = schema.choice(f'{where}: unit', entry['unit'], units) if 'unit' in entry else ''
     return Source(texts['topic'], texts['field'], frame, texts['child'].strip('/'), said)
 

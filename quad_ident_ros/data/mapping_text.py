@@ -2,17 +2,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """A Mapping as the text of a mapping file."""
 
+from collections.abc import Iterable, Sequence
 from collections.abc import Mapping as Pairs
-from collections.abc import Sequence
 import json
 
-from quad_ident_ros.data.mapping import ATTITUDE, Mapping, ROLES, unit_of
+from quad_ident_ros.data.mapping import ATTITUDE, Column, Mapping, ROLES, unit_of
 from quad_ident_ros.data.message_roles import could_be
 from quad_ident_ros.data.readers.base import Content
 from quad_ident_ros.model.motors import KINDS
 
 
-def columns_text(columns: Pairs) -> dict[str, str]:
+def columns_text(columns: Pairs[str, Column]) -> dict[str, str]:
     """Return the lines of `columns:`, {column of the record: text of its entry}."""
     found = {}
     for name, column in columns.items():
@@ -42,11 +42,11 @@ def topics_text(source: object, found: Sequence[Content],
     they are read without a mapping, or None where that is in doubt.
     """
     roles = {role: [content for content in found if role in content.roles] for role in ROLES}
-    one = {role: topics[0].name for role, topics in roles.items() if len(topics) == 1
-           and not (roles['pose'] and role in ('position', 'attitude'))}    # a pose has both
-    if one.get('rotors') == one.get('commands'):
-        one.pop('rotors', None)     # measured speeds that are the commands would deny every lag
-    chosen = one | dict(chosen or {})
+    sole = {role: topics[0].name for role, topics in roles.items() if len(topics) == 1
+            and not (roles['pose'] and role in ('position', 'attitude'))}   # a pose has both
+    if sole.get('rotors') == sole.get('commands'):
+        sole.pop('rotors', None)    # measured speeds that are the commands would deny every lag
+    chosen = sole | dict(chosen or {})
     lines = []
     for role, topics in roles.items():
         for one in topics:
@@ -83,7 +83,8 @@ def names_text(source: object, outputs: Sequence[int], kind: str,
     return _text(source, [*listed, *lines])
 
 
-def table_text(source: object, mapping: Mapping, doubts: Sequence[str], columns: Pairs) -> str:
+def table_text(source: object, mapping: Mapping, doubts: Sequence[str],
+               columns: Iterable[str]) -> str:
     """
     Return a mapping file to begin with for a table.
 

@@ -7,17 +7,26 @@ The functions take any message object with the fields of its type, whether from 
 rclpy. Types are named package/msg/Name.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 import math
 import re
+from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from quad_ident_ros.data.message import Message
 from quad_ident_ros.data.topics import stamp_ns
 
 MOST_NUMBERS = 64   # in a list that is read: no vehicle has as many outputs
 _NED, _FRD_WORLD, _FRD_BODY = 1, 2, 3   # frames of px4_msgs/VehicleOdometry
+
+
+Values: TypeAlias = tuple[Any, ...]
+"""Numbers, or columns of them where the message has columns."""
+
+Result = TypeVar('Result')
 
 
 class NoSuch(Exception):
@@ -35,35 +44,35 @@ class Reading:
     frame(message): world or body, of a velocity; fixed: fields that say how others are read.
     """
 
-    values: Callable
+    values: Callable[[Message], Values]
     rank: int | None = 0
     kind: str = ''
-    frame: Callable | None = None
+    frame: Callable[[Message], str] | None = None
     fixed: tuple[str, ...] = ()
 
 
-def _xyz(v):
+def _xyz(v: Message) -> Values:
     return v.x, v.y, v.z
 
 
-def _wxyz(q):
+def _wxyz(q: Message) -> Values:
     return q.w, q.x, q.y, q.z
 
 
-def _pose(pose):
+def _pose(pose: Message) -> Values:
     return *_xyz(pose.position), *_wxyz(pose.orientation)
 
 
-def _transform(transform):
+def _transform(transform: Message) -> Values:
     return *_xyz(transform.translation), *_wxyz(transform.rotation)
 
 
-def _odometry_frame(message):
+def _odometry_frame(message: Message) -> str:
     """Return world where an Odometry says that its twist is in the frame of the pose, or ''."""
     return 'world' if message.child_frame_id == message.header.frame_id != '' else ''
 
 
-def _known(index, covariance, values):
+def _known(index: int, covariance: Sequence[float] | np.ndarray, values: Values) -> Values:
     """Return values, nan where the message says by a covariance of -1 that it has none."""
     known = covariance[index] != -1
     if np.ndim(known):
@@ -71,32 +80,33 @@ def _known(index, covariance, values):
     return values if known else tuple([math.nan] * len(values))
 
 
-def _px4_pose(m):
+def _px4_pose(m: Message) -> Values:
     return *m.position, *m.q
 
 
-def _px4_velocity_frame(m):
+def _px4_velocity_frame(m: Message) -> str:
     code = m.velocity_frame
     if code not in (_NED, _FRD_WORLD, _FRD_BODY):
         raise NoSuch(f'its velocity_frame {code} is not known')
     return 'body' if code == _FRD_BODY else 'world'
 
 
-def _either(new, old):
+def _either(new: Callable[[Message], Result], old: Callable[[Message], Result]
+            ) -> Callable[[Message], Result]:
     """Return a function that takes what a message of now has, or one of before PX4 1.14."""
     return lambda m: new(m) if hasattr(m, 'position') else old(m)
 
 
-def _px4_old_velocity_frame(m):
+def _px4_old_velocity_frame(m: Message) -> str:
     return 'body' if m.velocity_frame == _FRD_BODY else 'world'
 
 
-def _esc_rpm(m):
+def _esc_rpm(m: Message) -> Values:
     return tuple(report.esc_rpm for report in m.esc[:max(int(m.esc_count), 1)])
 
 
-def _actuators(speeds):
-    def values(m):
+def _actuators(speeds: str) -> Callable[[Message], Values]:
+    def values(m: Message) -> Values:
         found = tuple(getattr(m, speeds))
         if not found:
             raise NoSuch(f'the list {speeds} is empty; name another field, such as field: '
@@ -105,7 +115,7 @@ def _actuators(speeds):
     return values
 
 
-def _normalized(m):
+def _normalized(m: Message) -> Values:
     return tuple(m.normalized)
 
 
@@ -115,12 +125,12 @@ _TWIST_FRAMES = {'world': 'world map odom enu earth mocap vicon optitrack local_
 _FRAME_OF = {name: frame for frame, names in _TWIST_FRAMES.items() for name in names.split()}
 
 
-def _twist_frame(m):
+def _twist_frame(m: Message) -> str:
     """Return what the frame_id of a twist says: world, body, or '' where it is not known."""
     return _FRAME_OF.get(m.header.frame_id.strip('/').rpartition('/')[2], '')
 
 
-def _imu(m, field, index=0):
+def _imu(m: Message, field: str, index: int = 0) -> Values:
     value = getattr(m, field)
     values = _wxyz(value) if field == 'orientation' else _xyz(value)
     return _known(index, getattr(m, f'{field}_covariance'), values)
@@ -203,14 +213,14 @@ _OF_MOTORS = re.compile(r'motor|rotor|(^|[^a-z])esc|pwm|rpm|actuator|throttle|pr
 _ASKED_OF = re.compile(r'state$|status$|info|config|param|temperature|current')
 
 
-def roles_of(msgtype):
+def roles_of(msgtype: str) -> tuple[str, ...]:
     """Return the roles that a message type could be read for, as mapping.ROLES names them."""
     if msgtype in _LISTS:
         return ('commands', 'rotors')
     return tuple(ROLES_OF.get(msgtype, ()))
 
 
-def could_be(topic, msgtype, fields):
+def could_be(topic: str, msgtype: str, fields: Iterable[str]) -> tuple[tuple[str, ...], str]:
     """
     Return the roles that a topic could be read for, and the field of its messages for outputs.
 
@@ -230,17 +240,17 @@ def could_be(topic, msgtype, fields):
             ('commands',)), field
 
 
-def is_tf(msgtype):
+def is_tf(msgtype: str | None) -> bool:
     """Whether messages of a type hold transforms of any number of frames."""
     return msgtype in ('tf2_msgs/msg/TFMessage', 'tf/msg/tfMessage')
 
 
-def is_px4(msgtype):
+def is_px4(msgtype: str) -> bool:
     """Whether a type is PX4's: NED and FRD, with stamps in us."""
     return msgtype.startswith('px4_msgs/')
 
 
-def reading_of(role, msgtype, message):
+def reading_of(role: str, msgtype: str, message: Message) -> Reading:
     """Return the Reading of a role for a type, by one of its messages; NoSuch where none is."""
     known = ROLES_OF.get(msgtype, {})
     if role not in known:
@@ -254,7 +264,7 @@ def reading_of(role, msgtype, message):
     return known[role]
 
 
-def stamp_of(message, msgtype):
+def stamp_of(message: Message, msgtype: str) -> int:
     """Return the stamp in a message, ns, or 0 where it has none."""
     if is_px4(msgtype):
         sample = int(getattr(message, 'timestamp_sample', 0))
@@ -262,7 +272,7 @@ def stamp_of(message, msgtype):
     return int(stamp_ns(message)) if hasattr(message, 'header') else 0
 
 
-def stamps_of(message, msgtype, count):
+def stamps_of(message: Message, msgtype: str, count: int) -> np.ndarray:
     """Return the stamps in a message with columns, (count,) ns, or 0 where it has none."""
     if is_px4(msgtype):
         stamps = _column(getattr(message, 'timestamp', 0), count)
@@ -275,11 +285,11 @@ def stamps_of(message, msgtype, count):
     return 10 ** 9 * stamp.sec.astype(np.int64) + stamp.nanosec.astype(np.int64)
 
 
-def _column(value, count):
+def _column(value: ArrayLike, count: int) -> np.ndarray:
     return np.broadcast_to(np.asarray(value, np.uint64), count)
 
 
-def at_path(message, path, msgtype):
+def at_path(message: Message, path: str, msgtype: str) -> Any:
     """
     Return what the path of a field leads to: a value, or a list of them through a list.
 
@@ -288,7 +298,7 @@ def at_path(message, path, msgtype):
     values, through_list = [message], False
     for part in path.split('.'):
         name = part.partition('[')[0]
-        following = []
+        following: list[Any] = []
         for value in values:
             fields = getattr(value, '__dataclass_fields__', None)
             fields = fields or getattr(value, 'get_fields_and_field_types', dict)()
@@ -309,7 +319,7 @@ def at_path(message, path, msgtype):
     return values if through_list else values[0]
 
 
-def shaped(role, value, path, many=False):
+def shaped(role: str, value: Any, path: str, many: bool = False) -> Values:
     """
     Return the numbers of a role from what a path leads to; NoSuch where they are not that.
 
@@ -337,7 +347,7 @@ def shaped(role, value, path, many=False):
     return _numbers(value, path, many)
 
 
-def _numbers(value, path, many, count=None):
+def _numbers(value: ArrayLike, path: str, many: bool, count: int | None = None) -> Values:
     dims = 2 if many else 1
     try:
         with np.errstate(invalid='ignore'):   # nan of a kind that signals

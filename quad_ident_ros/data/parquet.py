@@ -31,7 +31,8 @@ def read_parquet(path: Path) -> Table:
             if not any(pyarrow.types.is_struct(field.type) for field in found.schema):
                 break
             found = found.flatten()
-        columns, text = {}, []
+        columns: dict[str, np.ndarray] = {}
+        text = []
         for name, column in zip(found.column_names, found.columns, strict=True):
             if not name.isprintable() or not name.strip() or name.strip() in columns:
                 continue

@@ -121,8 +121,8 @@ def signal_limits(parameters: Parameters, count: int, simulated: bool,
     bank = bank or BANKS[0]
     if not simulated and is_dshot(parameters, bank):
         share = _number(parameters, 'DSHOT_MIN', 0.0)
-        low = min(max(round(share * DSHOT[1]), DSHOT[0]), DSHOT[1] - 1)
-        return np.full(count, float(low)), np.full(count, float(DSHOT[1])), 'DSHOT'
+        least = min(max(round(share * DSHOT[1]), DSHOT[0]), DSHOT[1] - 1)
+        return np.full(count, float(least)), np.full(count, float(DSHOT[1])), 'DSHOT'
     limits = []
     for ending, usual in (('MIN', 1000.0), ('MAX', 2000.0)):
         shared = next((value for value in (_number(parameters, f'{name}_{ending}') for name in

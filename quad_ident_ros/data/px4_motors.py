@@ -74,6 +74,7 @@ def commands(path: str | Path, topic: str, outputs: Samples, measured: Samples |
             if vehicle is not None:
                 notes.append(UNORDERED.format(topic=topic))
         return _named('output', np.where(np.isfinite(values), values, MOTORS_OFF)), speeds
+    assert order is not None and motors is not None     # the signal is that of these
     made, said = _map(signal, stamps, measured, parameters)
     told = made.speeds is not None or np.isfinite(vehicle.speed_max)
     ends = '' if made.speeds is not None else (

@@ -5,10 +5,12 @@
 from array import array
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from quad_ident_ros.data.counted import counted
+from quad_ident_ros.data.message import Message
 from quad_ident_ros.data.px4_states import RESET_FIELDS, resets, Topics
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.data.split import split
@@ -42,25 +44,25 @@ def split_at_resets(records: Sequence[FlightRecord], start_ns: int,
 class Counters:
     """The counters of resets in the messages of a type of TOPIC_OF, and the sizes of these."""
 
-    def __init__(self, msgtype: str):
+    def __init__(self, msgtype: str) -> None:
         self.topic = TOPIC_OF[msgtype]
         self._names = RESET_FIELDS[self.topic]
         self._numbers = array('d')
 
-    def add(self, message: object) -> None:
+    def add(self, message: Message) -> None:
         """Take the counters of a message."""
         self._numbers.extend(self._of(message))
 
-    def add_many(self, message: object, count: int) -> None:
+    def add_many(self, message: Message, count: int) -> None:
         """Take the counters of messages in one, with columns (count,) in place of numbers."""
         columns = [np.broadcast_to(value, count) for value in self._of(message)]
         self._numbers.frombytes(np.stack(columns, axis=-1).astype(float).tobytes())
 
-    def _of(self, message: object) -> list:
+    def _of(self, message: Message) -> list[Any]:
         values = []
         for name in self._names:
             field, _, place = name.partition('[')
-            value = getattr(message, field, np.nan)
+            value: Any = getattr(message, field, np.nan)
             if place:
                 k = int(place[:-1])
                 value = value[k] if np.ndim(value) and len(value) > k else np.nan

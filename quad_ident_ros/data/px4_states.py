@@ -100,7 +100,8 @@ def resets(data: Topics) -> tuple[list[tuple[int, int, str]], list[int]]:
         for name, kind, deltas, what in counters:
             if name not in fields:
                 continue
-            for k in np.flatnonzero(np.diff(np.asarray(fields[name]).astype(np.int64))) + 1:
+            steps = np.diff(np.asarray(fields[name]).astype(np.int64))
+            for k in (np.flatnonzero(steps) + 1).tolist():
                 size = _size(fields, kind, deltas, k)
                 if size is not None and size < SMALL[kind][0]:
                     small.append(int(stamps[k]))
@@ -133,7 +134,7 @@ def _size(fields: Mapping[str, np.ndarray], kind: str, deltas: Sequence[str],
 
 def _merged(found: list[tuple[int, int, str]]) -> list[tuple[int, int, str]]:
     """Return resets in order of time, those at one time as one."""
-    merged = []
+    merged: list[tuple[int, int, str]] = []
     for before, after, what in sorted(found):
         if merged and before <= merged[-1][1] + TWICE * 1e9:
             first, last, said = merged[-1]

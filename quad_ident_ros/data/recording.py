@@ -2,12 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """A recording on disk: the messages as a bag, the joined rows as CSV files."""
 
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 
 from quad_ident_ros.data.bag import BagWriter, is_known
 from quad_ident_ros.data.csv import CsvAppender
+from quad_ident_ros.data.joiner import Row
 from quad_ident_ros.data.topics import (
     arm_of,
     FLIGHT_TOPICS,
@@ -17,6 +19,7 @@ from quad_ident_ros.data.topics import (
     run_at,
     RUN_TOPIC,
     RUN_TYPE,
+    RunNotice,
 )
 
 
@@ -33,45 +36,46 @@ class Recording:
     Raises OSError where the disk refuses, and for the home of an unknown user.
     """
 
-    def __init__(self, parent, topics, types=None):
+    def __init__(self, parent: str | Path, topics: Mapping[str, str],
+                 types: Mapping[str, str] | None = None) -> None:
         self.folder = make_next(_expanded(parent), 'recording')
         self._full_names = dict(topics)
         joined = [name for name in topics if name != RUN_TOPIC]
-        self.columns = raw_columns(joined) if types is None else ()
+        self.columns: tuple[str, ...] = raw_columns(joined) if types is None else ()
         types = types or {name: FLIGHT_TOPICS[name].type for name in joined}
         self._kept = {name: kind for name, kind in {**types, RUN_TOPIC: RUN_TYPE}.items()
                       if is_known(kind)}
         self._bag = BagWriter(self.folder / 'bag',
                               [(topics[name], kind) for name, kind in self._kept.items()])
-        self._runs = []
-        self._run = None
-        self._last = None
-        self._csv = None
-        self._origin = None
-        self._rows = []
+        self._runs: list[RunNotice] = []
+        self._run: RunNotice | None = None
+        self._last: int | None = None
+        self._csv: CsvAppender | None = None
+        self._origin = 0
+        self._rows: list[Row] = []
         self._number = 0
 
-    def write(self, topic, received_ns, cdr):
+    def write(self, topic: str, received_ns: int, cdr: bytes) -> None:
         """Take a message as it came: its topic, time of receipt (ns) and serialized bytes."""
         if topic in self._kept:
             self._bag.write(self._full_names[topic], received_ns, cdr)
 
-    def add_run(self, notice):
+    def add_run(self, notice: RunNotice) -> None:
         """Take the notice of a run: its rows go into a CSV file of their own."""
         self._runs.append(notice)
 
-    def add_rows(self, rows):
+    def add_rows(self, rows: Iterable[Row]) -> None:
         """Take joined rows (stamp_ns, values)."""
         self._rows += rows
 
-    def flush(self):
+    def flush(self) -> None:
         """Hand everything to the operating system."""
         self._append()
         if self._csv is not None:
             self._csv.flush()
         self._bag.flush()
 
-    def close(self):
+    def close(self) -> None:
         """Finish the files."""
         try:
             self._append()
@@ -79,9 +83,9 @@ class Recording:
         finally:
             self._bag.close()
 
-    def _append(self):
+    def _append(self) -> None:
         rows, self._rows = self._rows, []
-        flight = []
+        flight: list[Row] = []
         for row in rows:
             run = run_at(self._runs, row[0])
             if self._last is not None and (run is not self._run or row[0] <= self._last):
@@ -93,7 +97,7 @@ class Recording:
         self._write_rows(flight)
         self._runs = needed_from(self._runs, self._run)
 
-    def _write_rows(self, rows):
+    def _write_rows(self, rows: Sequence[Row]) -> None:
         if not rows:
             return
         stamps = np.array([row[0] for row in rows])
@@ -101,18 +105,18 @@ class Recording:
                                  arm_of(self._run.info) if self._run else None)
         if self._csv is None:
             self._number += 1
-            self._origin = stamps[0]
+            self._origin = int(stamps[0])
             self._csv = CsvAppender(self.folder / f'flight_{self._number}.csv', ['t', *columns])
         t = (stamps - self._origin) * 1e-9
         self._csv.append(np.column_stack([t, *columns.values()]))
 
-    def _end_flight(self):
+    def _end_flight(self) -> None:
         if self._csv is not None:
             self._csv.close()
         self._csv = None
 
 
-def _expanded(path):
+def _expanded(path: str | Path) -> Path:
     """Return a path without ~; raises OSError where there is no such user."""
     try:
         return Path(path).expanduser()
@@ -120,7 +124,7 @@ def _expanded(path):
         raise OSError(f'no user has the home {Path(path).parts[0]}') from None
 
 
-def make_next(parent, name):
+def make_next(parent: Path, name: str) -> Path:
     """Make and return the first of the folders name_1, name_2, ... that is not there yet."""
     parent.mkdir(parents=True, exist_ok=True)
     number = 1

@@ -3,12 +3,15 @@
 """MCAP files that are not whole, because a recorder was killed while it wrote."""
 
 from collections import Counter
+from collections.abc import Collection, Generator
 from functools import lru_cache
 from io import BytesIO
 from mmap import ACCESS_READ, mmap
+from pathlib import Path
 import struct
 from zlib import crc32
 
+from rosbags.interfaces import Connection
 from rosbags.rosbag2.errors import ReaderError
 from rosbags.rosbag2.reader import DirectoryReader
 from rosbags.rosbag2.storage_mcap import ChunkInfo, decompress, McapReader
@@ -33,24 +36,27 @@ class Recovering(McapReader):
     recovered: whether the end is missing.
     """
 
-    def __init__(self, path):
+    path: Path
+
+    def __init__(self, path: Path) -> None:
         """Take the path of a file."""
         super().__init__(path)
         self.recovered = False
-        self._skipped = None    # damaged chunks, once they were counted
+        self._skipped: int | None = None    # damaged chunks, once they were counted
 
     @property
-    def skipped(self):
+    def skipped(self) -> int:
         """How many chunks are damaged and left out."""
         self._leave_out_damaged()
-        return self._skipped
+        return self._skipped or 0
 
-    def messages(self, *args, **kwargs):
+    def messages(self, connections: Collection[Connection], start: int | None = None,
+                 stop: int | None = None) -> Generator[tuple[Connection, int, bytes], None, None]:
         """Read messages as McapReader, without those of damaged chunks."""
         self._leave_out_damaged()
-        yield from super().messages(*args, **kwargs)
+        yield from super().messages(connections, start, stop)
 
-    def _leave_out_damaged(self):
+    def _leave_out_damaged(self) -> None:
         if self._skipped is not None:
             return
         state = self.path.stat()
@@ -61,7 +67,7 @@ class Recovering(McapReader):
         if whole:   # else reading raises what is wrong
             self.chunks[:] = whole
 
-    def _open(self):
+    def _open(self) -> None:
         try:
             super()._open()
             self._check_summary()
@@ -73,8 +79,9 @@ class Recovering(McapReader):
             if not self._recover():
                 raise
 
-    def _check_summary(self):
+    def _check_summary(self) -> None:
         """Raise ReaderError where the summary has a checksum, and that of another."""
+        assert self.bio is not None
         end = self.bio.seek(-END_BYTES, 2)
         begin, _, checksum = struct.unpack_from('<QQI', self.bio.read(END_BYTES), 9)
         self.bio.seek(begin)
@@ -82,8 +89,9 @@ class Recovering(McapReader):
                 self.bio.read(end + SUMMARY_CHECKSUM - begin)):
             raise ReaderError('the summary is not whole')
 
-    def _recover(self):
+    def _recover(self) -> bool:
         """Find the chunks that are whole, and make the index of them; return whether any is."""
+        assert self.bio is not None
         with mmap(self.bio.fileno(), 0, access=ACCESS_READ) as data:
             chunks, topics, self._skipped = _search(data, self.data_start)
         if not chunks:
@@ -102,6 +110,7 @@ class Recovering(McapReader):
         count, filled = counts.total(), [one for one in chunks if one.channel_count]
         begin = min((one.message_start_time for one in filled), default=2 ** 63 - 1)
         end = max((one.message_end_time for one in filled), default=0)
+        assert self.statistics is not None
         self.statistics = self.statistics._replace(
             message_count=count, chunk_count=len(chunks), start_time=begin, end_time=end,
             channel_message_counts=dict(counts))
@@ -118,18 +127,18 @@ class RecoveringFolder(DirectoryReader):
     STORAGE_PLUGINS = {**DirectoryReader.STORAGE_PLUGINS, 'mcap': Recovering}
 
     @property
-    def recovered(self):
+    def recovered(self) -> bool:
         """Whether the end of one of the files is missing."""
         return any(getattr(one, 'recovered', False) for one in self.storages)
 
     @property
-    def skipped(self):
+    def skipped(self) -> int:
         """How many chunks are damaged and left out."""
         return sum(getattr(one, 'skipped', 0) for one in self.storages)
 
 
 @lru_cache(maxsize=64)
-def _damaged(path, _, size, places):
+def _damaged(path: str, _: int, size: int, places: tuple[tuple[int, int], ...]) -> frozenset[int]:
     """Return where damaged chunks begin, of (place, length) each; asked for again and again."""
     if not size:
         return frozenset()
@@ -138,7 +147,7 @@ def _damaged(path, _, size, places):
                          if not _whole_chunk(data, at, length - HEAD))
 
 
-def _search(data, at):
+def _search(data: mmap, at: int) -> tuple[list[ChunkInfo], bytes, int]:
     """
     Return (ChunkInfos of whole chunks, the records of their topics, how many are damaged).
 
@@ -159,14 +168,15 @@ def _search(data, at):
             topics += data[at:end] if kind in TOPICS else b''
             at = end
         else:
-            at = _next_chunk(data, good)
-            if at is None:
+            following = _next_chunk(data, good)
+            if following is None:
                 break
+            at = following
             damaged += 1
     return chunks, bytes(topics), damaged
 
 
-def _next_chunk(data, at):
+def _next_chunk(data: mmap, at: int) -> int | None:
     """Return the place of the first chunk from a place on that is whole, or None."""
     while (at := data.find(bytes((CHUNK,)), at)) >= 0:
         if at + HEAD + LEAST > len(data):
@@ -181,7 +191,7 @@ def _next_chunk(data, at):
     return None
 
 
-def _whole_chunk(data, at, length):
+def _whole_chunk(data: mmap, at: int, length: int) -> tuple[ChunkInfo, bytes] | None:
     """Return the ChunkInfo of the chunk there and its records of topics, None if not whole."""
     content = data[at + HEAD:at + HEAD + length]
     if data[at] != CHUNK or len(content) != length or length < LEAST:
@@ -202,9 +212,10 @@ def _whole_chunk(data, at, length):
                      counts), topics
 
 
-def _counted(data):
+def _counted(data: bytes) -> tuple[dict[int, int], bytes]:
     """Return messages by topic in an unpacked chunk, and its records of topics; or ReaderError."""
-    counts, topics, at = Counter(), bytearray(), 0
+    counts: Counter[int] = Counter()
+    topics, at = bytearray(), 0
     while at < len(data):
         kind, length = struct.unpack_from('<BQ', data, at)
         end = at + HEAD + length

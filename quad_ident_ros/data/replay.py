@@ -2,14 +2,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """Flight records from a bag of the recorder, of `ros2 bag record` or of `quad_ident convert`."""
 
+from collections.abc import Container, Iterable, Sequence
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from quad_ident_ros.data.bag_file import BagFile, read_bag_messages
 from quad_ident_ros.data.buffer import Limits, RecordBuffer
-from quad_ident_ros.data.joiner import Joiner
+from quad_ident_ros.data.joiner import Joiner, Row
+from quad_ident_ros.data.message import Message
+from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.data.table import record_from_table
 from quad_ident_ros.data.topics import (
     ARRAY_TYPE,
@@ -33,14 +37,14 @@ _TYPES = {RUN_TOPIC: RUN_TYPE, **{topic.name: topic.type for topic in FLIGHT_TOP
 class _Named:
     """Topics of these names in any namespace: what else is in a bag is not even decoded."""
 
-    def __init__(self, names):
+    def __init__(self, names: Container[str]) -> None:
         self._names = names
 
-    def __contains__(self, topic):
-        return topic.rpartition('/')[2] in self._names
+    def __contains__(self, topic: object) -> bool:
+        return str(topic).rpartition('/')[2] in self._names
 
 
-def is_recorded(path):
+def is_recorded(path: str | Path) -> bool:
     """
     Whether a bag is of the recorder, of `quad_ident convert`, or of such topics.
 
@@ -49,7 +53,7 @@ def is_recorded(path):
     path = in_recording(path)
     with BagFile(path) as bag:
         topics = bag.topics
-    spaces = {}
+    spaces: dict[str, set[str]] = {}
     for topic in topics:
         space, _, name = topic.name.rpartition('/')
         if _TYPES.get(name) == topic.type:
@@ -60,13 +64,13 @@ def is_recorded(path):
                for names in spaces.values())
 
 
-def in_recording(path):
+def in_recording(path: str | Path) -> str | Path:
     """Return the bag in a folder of the recorder, or the path itself."""
     bag = Path(path) / 'bag'
     return bag if (bag / 'metadata.yaml').exists() else path
 
 
-def read_bag(path):
+def read_bag(path: str | Path) -> list[FlightRecord]:
     """
     Return the flight records in a bag, one per announced run, joined as the recorder does.
 
@@ -116,7 +120,9 @@ def read_bag(path):
             for record in records]
 
 
-def _joined(topics, spaces, samples):
+def _joined(topics: Sequence[str], spaces: Container[str],
+            samples: Iterable[tuple[str, str, Any]]) -> list[FlightRecord]:
+    """Return records of samples: namespace, topic, and a Row, or the message of a run."""
     joiner, buffer = Joiner(topics), RecordBuffer(raw_columns(topics), UNBOUNDED)
     records = []
     for space, name, sample in samples:
@@ -130,7 +136,7 @@ def _joined(topics, spaces, samples):
     return records + buffer.complete(run_over=True)
 
 
-def _sample(path, name, message):
+def _sample(path: str | Path, name: str, message: Message) -> Row:
     """Return stamp (ns) and values of a message; InputError for one of another shape."""
     try:
         stamp = int(np.int64(stamp_ns(message)))
@@ -144,7 +150,7 @@ def _sample(path, name, message):
     return stamp, values
 
 
-def _exact(path, topic, message):
+def _exact(path: str | Path, topic: str, message: Message) -> FlightRecord:
     where = f'{path}, topic {topic}'
     try:
         record = record_from_table(message, where)

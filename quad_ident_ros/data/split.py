@@ -76,8 +76,8 @@ def joined(records: Sequence[FlightRecord]) -> list[FlightRecord]:
     groups: dict[str, list[FlightRecord]] = {}
     for number, record in enumerate(records):
         whole = record.info.get('whole')
-        alone = whole is None or whole[1] is None
-        groups.setdefault(f'{number}' if alone else f'of {whole[1]}', []).append(record)
+        key = f'{number}' if whole is None or whole[1] is None else f'of {whole[1]}'
+        groups.setdefault(key, []).append(record)
     return [rejoined(group) for group in groups.values()]
 
 
@@ -104,7 +104,8 @@ def rejoined(pieces: Sequence[FlightRecord]) -> FlightRecord:
             kept.append(piece.slice(first))
     columns = [column for column in kept[0].columns if all(one.has(column) for one in kept)]
     notes = _of_all(kept, 'notes')
-    said = {code: _of_all(kept, code) for code in NOTED if any(code in one.info for one in kept)}
+    said: dict[str, object] = {code: _of_all(kept, code) for code in NOTED
+                               if any(code in one.info for one in kept)}
     resets = list(dict.fromkeys(one.info['resets'] for one in kept if 'resets' in one.info))
     said |= {'resets': '; '.join(resets)} if resets else {}
     cuts = sorted({*(float(piece.t[0]) for piece in kept[1:]),
@@ -137,9 +138,9 @@ def jumps(record: FlightRecord) -> list[Reset]:
     if rest is not None:
         found += _steps(record, rest, POSITION, record.stack('px', 'py', 'pz'),
                         lambda size: f'the position jumps by {size:.2g} m')
-    rest = _unexplained_heading(record)
-    if rest is not None:
-        found += _steps(record, rest[0][:, None], HEADING, rest[1][:, None],
+    turn = _unexplained_heading(record)
+    if turn is not None:
+        found += _steps(record, turn[0][:, None], HEADING, turn[1][:, None],
                         lambda size: f'the heading jumps by {np.degrees(size):.0f} deg')
     return _merged(found)
 
@@ -247,7 +248,7 @@ def _steps(record: FlightRecord, rest: np.ndarray, least: float, value: np.ndarr
 
 def _merged(found: list[Reset]) -> list[Reset]:
     """Return jumps in order of time, those at one time as one."""
-    merged = []
+    merged: list[Reset] = []
     for before, after, why in sorted(found):
         if merged and before <= merged[-1][1]:
             last = merged[-1]

@@ -4,11 +4,12 @@
 
 from bisect import bisect_left, bisect_right
 from collections import deque
+from collections.abc import Mapping, Sequence
 import math
 
 import numpy as np
 
-from quad_ident_ros.data.joiner import Counts, RESTART_NS
+from quad_ident_ros.data.joiner import Counts, RESTART_NS, Row
 from quad_ident_ros.data.record import EULER, QUATERNION
 from quad_ident_ros.data.streams import HELD, INTERPOLATED, slerp, SLOW
 from quad_ident_ros.model.attitude import continuous
@@ -33,21 +34,23 @@ class StreamJoiner:
     default the first stream; most.
     """
 
-    def __init__(self, streams, gap, base=None, most=20000):
+    def __init__(self, streams: Mapping[str, str], gap: float, base: str | None = None,
+                 most: int = 20000) -> None:
         self.topics = tuple(streams)
         self.counts = Counts(received=dict.fromkeys(streams, 0))
-        self.columns = {}
+        self.columns: dict[str, tuple[str, ...]] = {}
         self._between = dict(streams)
         self.base = base or self.topics[0]
         self._gap = int(gap * 1e9)
         self._most = most
         self._samples = {name: _Samples() for name in streams}
         commands = next((name for name, how in streams.items() if how == HELD), self.base)
-        self._stamps = {name: deque() for name in (self.base, commands)}    # of rows, by the base
+        self._stamps: dict[str, deque[int]] = {     # of rows, by the base
+            name: deque() for name in (self.base, commands)}
         self._is_decided = len(self._stamps) == 1
         self._last = dict.fromkeys(streams, -1)
 
-    def add(self, name, stamp_ns, values):
+    def add(self, name: str, stamp_ns: int, values: Mapping[str, float]) -> list[Row]:
         """
         Take a sample, columns -> numbers, and return the rows (stamp_ns, values) now complete.
 
@@ -76,27 +79,27 @@ class StreamJoiner:
                 self._decide()
         return self._ready(False)
 
-    def raw_columns(self):
+    def raw_columns(self) -> tuple[str, ...]:
         """Return the names of the values of a row, once each stream has had a sample."""
         return tuple(column for name in self.topics for column in self.columns[name])
 
-    def has_reached(self, stamp_ns):
+    def has_reached(self, stamp_ns: int) -> bool:
         """Whether each stream has delivered this stamp or a later one."""
         return all(last >= stamp_ns for last in self._last.values())
 
-    def behind(self):
+    def behind(self) -> dict[str, float]:
         """Return {name: s} by which the last stamp of each stream heard is behind the base's."""
         last = self._last[self.base]
         return {name: (last - stamp) * 1e-9 for name, stamp in self._last.items()
                 if name != self.base and min(stamp, last) >= 0}
 
-    def drain(self):
+    def drain(self) -> list[Row]:
         """Return the rows that are complete, giving up those that are not."""
         if not self._is_decided:
             self._decide()
         return self._ready(True)
 
-    def _decide(self):
+    def _decide(self) -> None:
         """Choose the base by how many states and commands came so far."""
         state, commands = self._stamps
         if len(self._stamps[commands]) > FASTER * len(self._stamps[state]):
@@ -104,7 +107,7 @@ class StreamJoiner:
         self._stamps = {self.base: self._stamps[self.base]}
         self._is_decided = True
 
-    def _restart(self, name, stamp):
+    def _restart(self, name: str, stamp: int) -> None:
         """Forget the samples of a stream whose clock restarted, and what is from before it."""
         self._samples[name].clear()
         given_up = len(self._stamps.get(name, ()))
@@ -119,7 +122,7 @@ class StreamJoiner:
                 self._samples[other].clear()
                 self._last[other] = -1
 
-    def _ready(self, drain):
+    def _ready(self, drain: bool) -> list[Row]:
         rows, waiting = [], self._stamps[self.base]
         while waiting and self._is_decided:
             stamp = waiting[0]
@@ -128,8 +131,9 @@ class StreamJoiner:
             if any(part is None for part in parts) and not given_up:
                 break
             waiting.popleft()
-            if all(parts):
-                rows.append((stamp, tuple(value for part in parts for value in part)))
+            there = [part for part in parts if part]
+            if len(there) == len(parts):
+                rows.append((stamp, tuple(value for part in there for value in part)))
             else:
                 self.counts.dropped += 1
         # What is before the sample before the next row will not be asked for again.
@@ -140,7 +144,7 @@ class StreamJoiner:
         self.counts.joined += len(rows)
         return rows
 
-    def _at(self, name, stamp):
+    def _at(self, name: str, stamp: int) -> tuple[float, ...] | None:
         """Return the values of a stream at a stamp, () where it has none, None if not yet."""
         samples = self._samples[name]
         before, after = samples.around(stamp)
@@ -161,33 +165,36 @@ class StreamJoiner:
 class _Samples:
     """The samples of a stream in order of time."""
 
-    def __init__(self):
-        self._stamps, self._values = [], []
+    def __init__(self) -> None:
+        self._stamps: list[int] = []
+        self._values: list[tuple[float, ...]] = []
 
-    def add(self, stamp, values):
+    def add(self, stamp: int, values: tuple[float, ...]) -> None:
         """Take the next sample."""
         self._stamps.append(stamp)
         self._values.append(values)
 
-    def clear(self):
+    def clear(self) -> None:
         """Forget all of them."""
         self._stamps.clear()
         self._values.clear()
 
-    def around(self, stamp):
+    def around(self, stamp: int) -> tuple[Row | None, Row | None]:
         """Return the last (stamp, values) up to a stamp and the first from it on, or None."""
         left, right = bisect_right(self._stamps, stamp) - 1, bisect_left(self._stamps, stamp)
-        return tuple((self._stamps[k], self._values[k]) if 0 <= k < len(self._stamps) else None
-                     for k in (left, right))
+        return self._row(left), self._row(right)
 
-    def forget(self, stamp, most):
+    def _row(self, k: int) -> Row | None:
+        return (self._stamps[k], self._values[k]) if 0 <= k < len(self._stamps) else None
+
+    def forget(self, stamp: int, most: int) -> None:
         """Forget what is before the last sample up to a stamp, and beyond `most` samples."""
         done = max(bisect_right(self._stamps, stamp) - 1, len(self._stamps) - most)
         if done > 64 or done == len(self._stamps) - most > 0:   # rarely, as it moves the rest
             del self._stamps[:done], self._values[:done]
 
 
-def _between(columns, before, after, stamp):
+def _between(columns: Sequence[str], before: Row, after: Row, stamp: int) -> tuple[float, ...]:
     """Return values at a stamp between two samples (stamp, values)."""
     span = (after[0] - before[0]) * 1e-9
     x = (stamp - before[0]) * 1e-9
@@ -205,6 +212,6 @@ BETWEEN = {'commands': HELD, 'battery': SLOW}
 """How the streams of roles (data.mapping.ROLES) are between their samples, if not INTERPOLATED."""
 
 
-def between_of(role):
+def between_of(role: str) -> str:
     """Return how the stream of a role is between its samples."""
     return BETWEEN.get(role, INTERPOLATED)

@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Streams of different rates and stamps, joined on one time base."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -29,11 +30,12 @@ class Stream:
 
     source: str
     stamps: np.ndarray
-    columns: Mapping
+    columns: Mapping[str, np.ndarray]
     between: str = INTERPOLATED
 
 
-def join(where, streams):
+def join(where: str | Path, streams: Sequence[Stream]
+         ) -> tuple[int, np.ndarray, dict[str, np.ndarray], tuple[str, ...]]:
     """
     Return (start in ns, t (N,) s from there, columns, notes) of streams on one time base.
 
@@ -44,7 +46,7 @@ def join(where, streams):
     Args: where the file, for messages.
     Raises InputError where the streams share no time.
     """
-    notes = []
+    notes: list[str] = []
     clean = [_in_order(where, stream, notes) for stream in streams]
     base = next((s for s in clean if s.between == HELD), clean[0])
     stamps = base.stamps
@@ -68,7 +70,7 @@ def join(where, streams):
     return int(stamps[0]), (stamps - stamps[0]) * 1e-9, columns, tuple(notes)
 
 
-def _in_order(where, stream, notes):
+def _in_order(where: str | Path, stream: Stream, notes: list[str]) -> Stream:
     """Return a stream with rising stamps and finite values, and note what was left out."""
     stamps = np.asarray(stream.stamps, np.int64)
     finite = np.all([np.isfinite(values) for values in stream.columns.values()], axis=0)
@@ -89,7 +91,7 @@ def _in_order(where, stream, notes):
                    for name, values in stream.columns.items()}, stream.between)
 
 
-def covered(stream, stamps):
+def covered(stream: Stream, stamps: np.ndarray) -> np.ndarray:
     """Return where a Stream in order has samples around stamps (N,) ns, bool."""
     after = np.searchsorted(stream.stamps, stamps, side='left')
     inside = (stamps >= stream.stamps[0]) & (after < len(stream.stamps))
@@ -101,7 +103,7 @@ def covered(stream, stamps):
     return inside & (short | exact)
 
 
-def at_stamps(stream, stamps, origin):
+def at_stamps(stream: Stream, stamps: np.ndarray, origin: int) -> dict[str, np.ndarray]:
     """
     Return the columns of a Stream in order at stamps (N,) ns, rising, that it covers.
 
@@ -124,7 +126,7 @@ def at_stamps(stream, stamps, origin):
     return columns
 
 
-def slerp(t, quaternion, at):
+def slerp(t: np.ndarray, quaternion: np.ndarray, at: np.ndarray) -> np.ndarray:
     """
     Return the attitudes between samples, by turning at a constant rate from each to the next.
 

@@ -5,13 +5,16 @@
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from quad_ident_ros.data.modes import mode_spans
 from quad_ident_ros.data.quality import (
     clock_offset,
+    ClockOffset,
     command_offset,
+    Finding,
     findings,
     gravest_first,
     velocity_offset,
@@ -22,6 +25,7 @@ from quad_ident_ros.data.quality.series import GAP
 from quad_ident_ros.data.readers.base import Content
 from quad_ident_ros.data.record import FlightRecord, unit
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.vehicle import Vehicle
 
 OF_GROUND = 'thrust', 'saturation', 'rotor_order', 'rotor_spin'
 """Codes of Findings by which motors that stand look like faults."""
@@ -30,7 +34,8 @@ UNITS = {'roll': 'rad/s', 'pitch': 'rad/s', 'yaw': 'rad/s', 'vertical': 'm/s^2',
          'horizontal': 'm/s'}
 
 
-def summarise(record, vehicle=None, more=()):
+def summarise(record: FlightRecord, vehicle: Vehicle | None = None, more: Sequence[Finding] = ()
+              ) -> dict[str, Any]:
     """
     Return what is in a record, JSON-able.
 
@@ -67,10 +72,11 @@ def summarise(record, vehicle=None, more=()):
     }
 
 
-def _findings(record, vehicle):
+def _findings(record: FlightRecord, vehicle: Vehicle | None) -> tuple[Finding, ...]:
     """Return the Findings on a record, those of OF_GROUND on what diagnose and fit keep of it."""
     found = findings(record, vehicle)
-    if not any(one.code == 'ground' and one.severity == 'warning' for one in found):
+    if vehicle is None or not any(one.code == 'ground' and one.severity == 'warning'
+                                  for one in found):
         return found
     flown = findings(airborne(record, vehicle), vehicle)
     return gravest_first([*(one for one in found if one.code not in OF_GROUND),
@@ -100,7 +106,7 @@ def unread(path: str | Path, error: InputError) -> dict:
          'remedy': ''}]}
 
 
-def _column(name, values, t):
+def _column(name: str, values: np.ndarray, t: np.ndarray) -> dict[str, Any]:
     finite = values[np.isfinite(values)]
     changes = int(np.count_nonzero(values[1:] != values[:-1]))
     some = {'unit': unit(name), 'missing': int(len(values) - len(finite)),
@@ -113,7 +119,7 @@ def _column(name, values, t):
     return some
 
 
-def _clock(offset):
+def _clock(offset: ClockOffset | None) -> dict[str, float | None] | None:
     if offset is None:
         return None
     known = bool(np.isfinite(offset.drift_std))

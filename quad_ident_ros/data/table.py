@@ -5,14 +5,16 @@
 import csv
 import io
 import json
+from typing import Any
 
 import numpy as np
 
+from quad_ident_ros.data.message import Message
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.errors import InputError
 
 
-def record_table(record):
+def record_table(record: FlightRecord) -> tuple[np.ndarray, tuple[str, str, str]]:
     """
     Return the table (samples, columns, 1) of a flight record and its three labels.
 
@@ -26,7 +28,7 @@ def record_table(record):
             ('samples', line.getvalue(), json.dumps(record.info)))
 
 
-def record_from_table(message, where='topic record'):
+def record_from_table(message: Message, where: str = 'topic record') -> FlightRecord:
     """
     Return the flight record of a Float64MultiArray; InputError where it holds none.
 
@@ -52,7 +54,7 @@ def record_from_table(message, where='topic record'):
     return FlightRecord(columns.pop('t'), columns, info)
 
 
-def _info_from(where, label):
+def _info_from(where: str, label: str) -> dict[str, Any]:
     try:
         info = json.loads(label or '{}')
     except (ValueError, RecursionError):

@@ -43,11 +43,11 @@ class Table:
     names of columns that hold text and were left out.
     """
 
-    columns: dict
-    units: dict
-    notes: tuple = ()
+    columns: dict[str, np.ndarray]
+    units: dict[str, str]
+    notes: tuple[str, ...] = ()
     how: str = ''
-    doubts: tuple = ()
+    doubts: tuple[str, ...] = ()
     rate: float = 0.0
     text: tuple[str, ...] = ()
 
@@ -61,8 +61,9 @@ def read_text(path: Path, separator: str = '') -> Table:
     begin = first_rows(path, _HEAD + 1)
     layout = _layout(path, *begin, separator) if begin else None
     plain = layout and plain_numbers(path, layout.line - 1, layout.delimiter, layout.comma)
-    if plain and plain.values.shape[1] == len(layout.names):
-        columns, truncated, text = plain.columns(layout.names), plain.truncated, []
+    text: list[str] = []
+    if layout and plain and plain.values.shape[1] == len(layout.names):
+        columns, truncated = plain.columns(layout.names), plain.truncated
     else:
         rows, truncated = rows_of(path)
         places = [k for k, row in enumerate(rows, 1) if row.strip()]    # as editors count

@@ -16,13 +16,13 @@ _CONTROL = re.compile(rb'[\x00-\x08\x0e-\x1a\x1c-\x1f\x7f\x81\x8d\x8f\x90\x9d]')
 LINE_BYTES = 60   # that a line takes in memory besides its text
 
 
-def error_at(path, line, column, problem, remedy):
+def error_at(path: Path, line: int, column: str | None, problem: str, remedy: str) -> InputError:
     """Return the one-line InputError of a place in a file."""
     where = f', column {column[:40]!r}' if column is not None else ''
     return InputError(f'{path}, line {line}{where}: {problem}; {remedy}')
 
 
-def rows_of(path):
+def rows_of(path: Path) -> tuple[list[str], bool]:
     """Return the whole lines of a file, header first, and whether a cut one was dropped."""
     data = _bytes(path)
     try:
@@ -47,7 +47,8 @@ def first_rows(path: Path, count: int) -> tuple[list[str], list[int]] | None:
 
     Args: path; count: how many lines at most. Returns None where there is none in UTF-8.
     """
-    rows, places = [], []
+    rows: list[str] = []
+    places: list[int] = []
     try:
         if not path.is_file():
             return None
@@ -73,7 +74,7 @@ def _begins_packed(path: Path) -> bool:
         return file.read(2) == b'\x1f\x8b'
 
 
-def _bytes(path):
+def _bytes(path: Path) -> bytes:
     """Return the content of a file, unpacked where it is packed by gzip, or named so."""
     try:
         if not path.is_file():

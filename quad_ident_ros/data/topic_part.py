@@ -4,23 +4,28 @@
 
 from array import array
 from collections import Counter
+from collections.abc import Collection, Sequence
 import math
 import re
+from typing import TypeAlias
 
 import numpy as np
 
 from quad_ident_ros.data import frames
-from quad_ident_ros.data.mapping import Actuators, in_record_unit, rotor_speeds
+from quad_ident_ros.data.mapping import Actuators, in_record_unit, Mapping, rotor_speeds, Source
+from quad_ident_ros.data.message import Message
 from quad_ident_ros.data.message_roles import (
     at_path,
     is_px4,
     is_tf,
     NoSuch,
+    Reading,
     reading_of,
     ROLES_OF,
     shaped,
     stamp_of,
     stamps_of,
+    Values,
 )
 from quad_ident_ros.data.px4_resets import Counters, TOPIC_OF
 from quad_ident_ros.data.record import QUATERNION
@@ -40,6 +45,10 @@ _COLUMNS = {'position': ('px', 'py', 'pz'), 'velocity': ('vx', 'vy', 'vz'),
             'rate': ('wx', 'wy', 'wz'), 'specific_force': ('ax', 'ay', 'az')}
 
 
+_Sample: TypeAlias = tuple[tuple[str, str], int, tuple[float, ...]]
+"""A frame and the one that it is in, both '' but for transforms; stamp in ns or 0; numbers."""
+
+
 class TopicPart:
     """
     What the messages of one topic hold for one role.
@@ -48,32 +57,33 @@ class TopicPart:
     Args: where: file and topic, for messages; role of mapping.ROLES; source mapping.Source.
     """
 
-    def __init__(self, where, role, source):
+    def __init__(self, where: str, role: str, source: Source) -> None:
         self.role, self.source = role, source
         self._where = where
-        self._type = None
-        self._reading = None
+        self._type = ''
+        self._reading: Reading | None = None
         self._frame = ''
         self._frame_id = ''
         self._width = 0
         self._numbers = array('d')
         self._stamps = array('q')
         self.received = array('q')
-        self.counters = None    # of resets, where its type has them
-        self.spoilt = ()        # messages, counted from 0, whose attitude was left out
+        self.counters: Counters | None = None   # of resets, where its type has them
+        self.spoilt: Sequence[int] = ()     # messages, counted from 0, whose attitude was left out
         self.note = ''          # on how its values came about
         self.refused = ''       # why poses that the last live message completes were left out
-        self._left = Counter()  # live poses without an attitude, as transforms have them
+        # Live poses without an attitude, as transforms have them.
+        self._left: Counter[str] = Counter()
         self._messages = 0
         self._transforms = Transforms(where, source.topic, source.child)
 
     @property
-    def count(self):
+    def count(self) -> int:
         """Return the number of its samples that are finite."""
         return int(np.isfinite(self._numbers).sum()) // (self._width or 1)
 
     @property
-    def offset(self):
+    def offset(self) -> float:
         """Return the time from stamp to receipt, s: the median, or 0 where there are no stamps."""
         if not self.stamped:
             return 0.0
@@ -81,11 +91,11 @@ class TopicPart:
         return float(np.median(late)) * 1e-9
 
     @property
-    def stamped(self):
+    def stamped(self) -> bool:
         """Whether each of its messages has a stamp."""
         return min(self._stamps) > 0
 
-    def add(self, received, message, fixed=False):
+    def add(self, received: int, message: Message, fixed: bool = False) -> None:
         """
         Take a message and its time of receipt, ns; InputError where it does not hold this.
 
@@ -108,12 +118,12 @@ class TopicPart:
             self._numbers.extend(values)
 
     @property
-    def is_tf(self):
+    def is_tf(self) -> bool:
         """Whether its messages are transforms of frames, by the first of them."""
         return is_tf(self._type) and not self.source.field
 
     @property
-    def fixed(self):
+    def fixed(self) -> Collection[str] | None:
         """
         Return the fields that say how a message is read, after the first.
 
@@ -124,7 +134,7 @@ class TopicPart:
             return None
         return self._reading.fixed if self._reading else ()
 
-    def add_many(self, received, message):
+    def add_many(self, received: np.ndarray, message: Message) -> None:
         """Take messages in one, with columns in place of numbers, as add; received (n,) ns."""
         count = len(received)
         columns = in_record_unit(self.role, self._values(message, self._type, many=True),
@@ -138,7 +148,8 @@ class TopicPart:
         self._stamps.frombytes(np.maximum(stamps_of(message, self._type, count), 0).tobytes())
         self.received.frombytes(received.tobytes())
 
-    def samples(self, received, message, kind, mapping, fixed=False):
+    def samples(self, received: int, message: Message, kind: str, mapping: Mapping,
+                fixed: bool = False) -> list[tuple[int, int, dict[str, float]]]:
         """
         Return [(stamp in ns, time of receipt, columns -> numbers)] that a message completes.
 
@@ -172,13 +183,13 @@ class TopicPart:
             raise InputError(self.refused)
         return samples
 
-    def left_out(self, end):
+    def left_out(self, end: bool) -> Counter[str]:
         """Return how many live poses came to nothing since the last call, see Transforms."""
         new, self._left = self._transforms.left_out(end) + self._left, Counter()
         return new
 
-    def _read(self, message, kind):
-        """Return [(frame and that it is in, stamp in ns or 0, numbers)] in a message."""
+    def _read(self, message: Message, kind: str) -> list[_Sample]:
+        """Return the samples in a message, one or those of its transforms."""
         self._messages += 1
         try:
             return [self._one(part, kind) for part in self._parts(message, kind)]
@@ -187,23 +198,23 @@ class TopicPart:
         except OTHER_SHAPE:
             raise self._defined_otherwise() from None
 
-    def _defined_otherwise(self):
+    def _defined_otherwise(self) -> InputError:
         return InputError(f'{self._here()}: the definition of {self._type} in the bag '
                           'differs from that of ROS 2; record it again')
 
-    def _here(self):
+    def _here(self) -> str:
         return f'{self._where}, message {self._messages}'
 
-    def _parts(self, message, kind):
+    def _parts(self, message: Message, kind: str) -> list[Message]:
         """Return the message, or its transforms."""
-        if self._type is None:
+        if not self._type:
             self._type = kind
         if kind != self._type:
             raise NoSuch(f'it is of type {kind}, the first is of {self._type}; record one type '
                          'on a topic')
         return list(message.transforms) if self.is_tf else [message]
 
-    def _one(self, message, kind):
+    def _one(self, message: Message, kind: str) -> _Sample:
         if not self._numbers:
             self._frame_id = str(getattr(getattr(message, 'header', None), 'frame_id', ''))[:40]
         values = tuple(map(float, in_record_unit(self.role, self._values(message, kind),
@@ -212,10 +223,10 @@ class TopicPart:
         if len(values) != self._width:
             raise NoSuch(f'{len(values)} values where the first has {self._width}')
         stamp = stamp_of(message, kind)
-        frame = (message.child_frame_id, message.header.frame_id) if self.is_tf else None
+        frame = (message.child_frame_id, message.header.frame_id) if self.is_tf else ('', '')
         return frame, stamp if 0 < stamp < 2 ** 63 else 0, values
 
-    def _refuse_down(self, mapping):
+    def _refuse_down(self, mapping: Mapping) -> None:
         """Refuse a pose whose frame_id says NED, unless the mapping says so, too."""
         if (self.role in ('pose', 'position', 'attitude') and mapping.world == 'ENU'
                 and not is_px4(self._type) and _DOWN.search(self._frame_id.lower())):
@@ -223,7 +234,7 @@ class TopicPart:
                              'world: NED and body: FRD into a mapping (--mapping), or record it '
                              'in ENU')
 
-    def _values(self, message, kind, many=False):
+    def _values(self, message: Message, kind: str, many: bool = False) -> Values:
         path = self.source.field
         if not path and kind not in ROLES_OF and self.role in _DEFAULT_FIELD:
             path = _DEFAULT_FIELD[self.role]
@@ -244,7 +255,7 @@ class TopicPart:
         self._reading = reading
         return reading.values(message)
 
-    def stream(self, mapping, spoilt=False):
+    def stream(self, mapping: Mapping, spoilt: bool = False) -> Stream:
         """
         Return the Stream of the messages; InputError where there are none.
 
@@ -272,30 +283,30 @@ class TopicPart:
         return Stream(f'topic {self.source.topic}', np.array(stamps, np.int64), columns,
                       {'commands': HELD, 'battery': SLOW}.get(self.role, INTERPOLATED))
 
-    def not_unit(self, number):
+    def not_unit(self, number: int) -> str:
         """Return the error of a message, counted from 0, whose attitude is invalid."""
         return (f'{self._where}, message {number + 1}: the quaternion does not have length 1; '
                 f'record a {self.role} with an attitude, or leave it out with --from and --to')
 
-    def _is_unnamed(self, mapping, table):
+    def _is_unnamed(self, mapping: Mapping, table: np.ndarray) -> bool:
         """Whether commands of a type that says no kind are by their size no rotor speeds."""
         return (self.role == 'commands' and mapping.actuators is None
                 and not (self._reading.kind if self._reading else '')
                 and kinds_of(table) not in ((), ('speed',)))
 
-    def _compose(self):
+    def _compose(self) -> None:
         """Put the poses that the transforms make in the place of what was read."""
         stamps, received, table = self._transforms.poses()
         self._say_chain()
         self._stamps, self.received = array('q', stamps.tobytes()), array('q', received.tobytes())
         self._numbers = array('d', table.tobytes())
 
-    def _say_chain(self):
+    def _say_chain(self) -> None:
         """Take the frame of the poses, and the note on it, from the transforms."""
         self._frame_id = next(iter(self._transforms.chain()), '')
         self.note = self._transforms.in_words()
 
-    def _columns(self, table, mapping):
+    def _columns(self, table: np.ndarray, mapping: Mapping) -> dict[str, np.ndarray]:
         """Return the columns of the role from the rows of its messages."""
         px4 = is_px4(self._type)
         world, body = ('NED', 'FRD') if px4 else (mapping.world, mapping.body)
@@ -321,7 +332,7 @@ class TopicPart:
             return {'vbat': np.where(np.isfinite(table[:, 0]), table[:, 0], math.nan)}
         return self._outputs(table, mapping.actuators)
 
-    def _outputs(self, table, actuators):
+    def _outputs(self, table: np.ndarray, actuators: Actuators | None) -> dict[str, np.ndarray]:
         """Return commands or rotor speeds in rad/s, or outputs where these are not known."""
         kind = _SPEEDS.get(self.source.unit) or (self._reading.kind if self._reading else '')
         if self.role == 'rotors':

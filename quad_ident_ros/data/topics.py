@@ -7,13 +7,16 @@ The functions take any message object with the fields of its type, whether from 
 bag.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 import json
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from quad_ident_ros.data.cdr import Reader, stamped_numbers
+from quad_ident_ros.data.message import Message
 from quad_ident_ros.data.record import ARM, MOMENTS
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.attitude import rotation_matrix
@@ -29,27 +32,27 @@ class FlightTopic:
 
     name: str
     type: str
-    columns: tuple
-    values: Callable
+    columns: tuple[str, ...]
+    values: Callable[[Message], tuple[float, ...]]
     read: Reader
 
 
-def _pose(message):
+def _pose(message: Message) -> tuple[float, ...]:
     p, q = message.pose.position, message.pose.orientation
     return p.x, p.y, p.z, q.w, q.x, q.y, q.z
 
 
-def _twist(message):
+def _twist(message: Message) -> tuple[float, ...]:
     v, w = message.twist.linear, message.twist.angular
     return v.x, v.y, v.z, w.x, w.y, w.z
 
 
-def _input(message):
+def _input(message: Message) -> tuple[float, ...]:
     force, torque = message.wrench.force, message.wrench.torque
     return force.z, torque.x, torque.y, torque.z
 
 
-def _attitude(message):
+def _attitude(message: Message) -> tuple[float, ...]:
     return message.vector.x, message.vector.y, message.vector.z
 
 
@@ -84,7 +87,7 @@ LONGEST_ARM = 100.0     # m
 JOINED_TOPIC = 'joined_until'
 
 
-def stamp_ns(message):
+def stamp_ns(message: Message) -> int:
     """Return the stamp of a message with a header, ns."""
     stamp = message.header.stamp
     return stamp.sec * 1_000_000_000 + stamp.nanosec
@@ -94,7 +97,7 @@ def stamp_ns(message):
 OTHER_SHAPE = (AttributeError, OverflowError, TypeError, ValueError)
 
 
-def not_unit(quaternion):
+def not_unit(quaternion: ArrayLike) -> np.ndarray:
     """Return which quaternions (..., 4) are no attitude; those with nan are left to others."""
     q = np.asarray(quaternion, float)
     finite = np.isfinite(q).all(axis=-1)
@@ -102,12 +105,13 @@ def not_unit(quaternion):
     return finite & ~((length > 0.5) & (length < 2.0))
 
 
-def raw_columns(topics):
+def raw_columns(topics: Iterable[str]) -> tuple[str, ...]:
     """Return the names of the raw columns that the topics carry together."""
     return tuple(column for name in topics for column in FLIGHT_TOPICS[name].columns)
 
 
-def record_columns(names, table, arm=None):
+def record_columns(names: Iterable[str], table: ArrayLike, arm: float | None = None
+                   ) -> dict[str, np.ndarray]:
     """
     Return the columns of the flight record format from raw ones.
 
@@ -122,8 +126,8 @@ def record_columns(names, table, arm=None):
     height = columns.pop('height', None)
     if height is not None:
         columns.setdefault('pz', height)
-    body = [columns.pop(name, None) for name in ('body_vx', 'body_vy', 'body_vz')]
-    if body[0] is not None and 'qw' in columns:
+    body = [columns.pop(name) for name in ('body_vx', 'body_vy', 'body_vz') if name in columns]
+    if body and 'qw' in columns:
         quaternion = np.stack([columns[name] for name in ('qw', 'qx', 'qy', 'qz')], axis=-1)
         with np.errstate(over='ignore', invalid='ignore'):   # the record refuses what comes of it
             velocity = np.einsum('nij,jn->in', rotation_matrix(quaternion), np.stack(body))
@@ -131,7 +135,7 @@ def record_columns(names, table, arm=None):
     return columns
 
 
-def arm_of(info):
+def arm_of(info: Mapping[str, Any]) -> float | None:
     """Return the arm length (m) that the info of a run or record says, or None."""
     arm = info.get(ARM)
     if isinstance(arm, bool) or not isinstance(arm, int | float) or not 0.0 < arm < LONGEST_ARM:
@@ -146,15 +150,15 @@ class RunNotice:
     start_ns: int
     stop_ns: int
     samples: int
-    info: dict
+    info: dict[str, Any]
 
-    def to_json(self):
+    def to_json(self) -> str:
         """Return the notice as text."""
         return json.dumps({'start_ns': self.start_ns, 'stop_ns': self.stop_ns,
                            'samples': self.samples, 'info': self.info})
 
     @classmethod
-    def from_json(cls, text):
+    def from_json(cls, text: str) -> 'RunNotice':
         """Return the notice that a text holds; raises InputError where it holds none."""
         try:
             data = json.loads(text)
@@ -168,14 +172,14 @@ class RunNotice:
                              'with start_ns, stop_ns, samples and info') from None
         return notice
 
-    def cuts_short(self, other):
+    def cuts_short(self, other: 'RunNotice') -> bool:
         """Tell whether this is the other run, ended before its time."""
         return (self.info.get('status') == 'stopped' and self.start_ns == other.start_ns
                 and self.info.get('session') == other.info.get('session')
                 and self.stop_ns < other.stop_ns)
 
 
-def needed_from(runs, now):
+def needed_from(runs: list[RunNotice], now: RunNotice | None) -> list[RunNotice]:
     """
     Return the notices that rows may still need when those of one of them, or None, are at hand.
 
@@ -188,7 +192,7 @@ def needed_from(runs, now):
     return [run for run in runs[:place] if run.stop_ns >= now.start_ns] + runs[place:]
 
 
-def run_at(runs, stamp):
+def run_at(runs: Iterable[RunNotice], stamp: int) -> RunNotice | None:
     """
     Return the notice of the run that a stamp (ns) belongs to, or None.
 

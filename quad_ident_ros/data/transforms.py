@@ -138,7 +138,8 @@ class Transforms:
 
     def chain(self) -> tuple[str, ...]:
         """Return the frames from the root to that of the vehicle, () if there is none."""
-        name, found = self._frame(), []
+        name = self._frame()
+        found: list[str] = []
         while name in self._links:
             if name in found:
                 raise InputError(f'{self._where}: the transforms of {", ".join(found[:_NAMED])} '
@@ -187,7 +188,7 @@ class Transforms:
         """
         if not self._chain:
             links = self._of(self.chain())
-            own = links[-1].stamps if links else ()
+            own = links[-1].stamps if links else array('q')
             if len(own) < 2 or own[-1] - own[0] < SETTLED:
                 return []
             self._chain = self.chain()

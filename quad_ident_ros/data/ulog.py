@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Flight records from the logs of PX4 (ULog)."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -75,11 +76,11 @@ def read_ulog(path: str | Path, mapping: Mapping | None = None,
              *([f'{counted(len(log.dropouts), "dropout")} while logging'] if log.dropouts else [])]
     commands: list[str] = []
     logging: list[str] = []
-    streams = [_attitude(path, data), *_position(path, data, logging), _rate(path, data),
-               _specific_force(path, data), _battery(path, data)]
-    streams += _outputs(path, log, data, mapping.actuators, vehicle, commands,
-                        mapping.instances.get('actuator_outputs'))
-    streams = [stream for stream in streams if stream is not None]
+    read = [_attitude(path, data), *_position(path, data, logging), _rate(path, data),
+            _specific_force(path, data), _battery(path, data)]
+    read += _outputs(path, log, data, mapping.actuators, vehicle, commands,
+                     mapping.instances.get('actuator_outputs'))
+    streams = [stream for stream in read if stream is not None]
     logging += _slow(streams)
     notes += [*commands, *logging]
     start, t, columns, joined = join(path, streams)
@@ -176,7 +177,8 @@ def _slow(streams: list[Stream]) -> list[str]:
             f'{PROFILE}']
 
 
-def _instance(path, log, name, number):
+def _instance(path: Path, log: ULog, name: str, number: int | None
+              ) -> dict[str, np.ndarray] | None:
     """Return name -> values of one instance of a topic, the first if none is named, or None."""
     found = {data.multi_id: data.data for data in log.data_list if data.name == name}
     if number is None:
@@ -187,7 +189,7 @@ def _instance(path, log, name, number):
     return found[number]
 
 
-def _values(path, topic, data, names):
+def _values(path: Path, topic: str, data: dict, names: Sequence[str]) -> np.ndarray:
     """Return the fields of a topic, (N, k)."""
     missing = [name for name in names if name not in data]
     if missing:
@@ -197,7 +199,7 @@ def _values(path, topic, data, names):
         return np.stack([np.asarray(data[name], float) for name in names], axis=-1)
 
 
-def _stamps(path, topic, data):
+def _stamps(path: Path, topic: str, data: dict) -> np.ndarray:
     """Return the stamps of a topic's samples, ns."""
     name = 'timestamp'
     if 'timestamp_sample' in data and np.all(data['timestamp_sample'] > 0):
@@ -210,16 +212,17 @@ def _stamps(path, topic, data):
     return np.asarray(data[name]).astype(np.int64) * 1000
 
 
-def _indexed(name, count):
+def _indexed(name: str, count: int) -> list[str]:
     return [f'{name}[{k}]' for k in range(count)]
 
 
-def _stream(path, topic, data, names, values, between=INTERPOLATED):
+def _stream(path: Path, topic: str, data: dict, names: Sequence[str], values: np.ndarray,
+            between: str = INTERPOLATED) -> Stream:
     return Stream(f'topic {topic}', _stamps(path, topic, data),
                   dict(zip(names, values.T, strict=True)), between)
 
 
-def _attitude(path, data):
+def _attitude(path: Path, data: dict) -> Stream:
     topic = next((name for name in ('vehicle_attitude', 'vehicle_odometry', 'estimator_attitude')
                   if data[name] is not None), None)
     if topic is None:
@@ -275,7 +278,7 @@ def _positions(path: Path, topic: str, found: dict) -> tuple[list[Stream], np.nd
     return streams, known
 
 
-def _rate(path, data):
+def _rate(path: Path, data: dict) -> Stream | None:
     topic, field = _densest(data, {'vehicle_angular_velocity': 'xyz',
                                    'sensor_combined': 'gyro_rad'})
     if data[topic] is not None:
@@ -290,7 +293,7 @@ def _rate(path, data):
     return None
 
 
-def _specific_force(path, data):
+def _specific_force(path: Path, data: dict) -> Stream | None:
     topic, field = _densest(data, {'vehicle_acceleration': 'xyz',
                                    'sensor_combined': 'accelerometer_m_s2'})
     if data[topic] is None:
@@ -313,7 +316,7 @@ def _densest(data: dict, fields: dict[str, str]) -> tuple[str, str]:
                 if DENSER * count >= most)
 
 
-def _battery(path, data):
+def _battery(path: Path, data: dict) -> Stream | None:
     topic = 'battery_status'
     if data[topic] is None:
         return None
@@ -331,7 +334,7 @@ def _outputs(path: Path, log: ULog, data: dict, actuators: Actuators | None,
     Args: instance: of actuator_outputs, as a mapping names it, or None.
     """
     if actuators is not None:
-        choices = ('actuator_outputs', 'actuator_motors')
+        choices: tuple[str, ...] = ('actuator_outputs', 'actuator_motors')
         choices = choices[1:] if actuators.kind == 'normalised' else choices
     elif vehicle is not None and vehicle.motors is not None and vehicle.motors.kind == 'pwm':
         choices = ('actuator_outputs', 'actuator_motors')
@@ -356,7 +359,7 @@ def _outputs(path: Path, log: ULog, data: dict, actuators: Actuators | None,
     columns, measured = commands(path, topic, (stamps, values), speeds, actuators, vehicle, motors,
                                  log.initial_parameters, simulated, notes, bank)
     streams = [Stream(f'topic {topic}', stamps, columns, HELD)]
-    if measured:
+    if measured and speeds is not None:
         streams.append(Stream('topic esc_status', speeds[0], measured, INTERPOLATED))
     return streams
 

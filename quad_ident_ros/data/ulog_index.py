@@ -60,9 +60,11 @@ def contents(path: str | Path) -> list[Content]:
     return sorted(found, key=lambda content: (not content.roles, content.name))
 
 
-def _declared(data: bytes, messages: Messages) -> tuple[dict, dict]:
+def _declared(data: bytes, messages: Messages
+              ) -> tuple[dict[str, tuple[str, ...]], dict[int, tuple[int, str]]]:
     """Return formats (name -> fields) and streams (number -> instance, name) of a log's bytes."""
-    formats, streams = {}, {}
+    formats: dict[str, tuple[str, ...]] = {}
+    streams: dict[int, tuple[int, str]] = {}
     for kind, at, size in messages.others:
         if kind == FORMAT and len(formats) < _MOST_STREAMS:
             name, _, fields = data[at:at + size].decode('ascii', 'replace').partition(':')

@@ -8,7 +8,7 @@ sample by itself. Of a whole log it gets all that is no sample, and the first of
 samples are taken at once.
 """
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 import contextlib
 import io
 from pathlib import Path
@@ -34,16 +34,16 @@ class _Content(io.BytesIO):
 
     used_up = False
 
-    def __init__(self, data):
+    def __init__(self, data: bytes) -> None:
         super().__init__(data)
         self._left = 8 * len(data) + 100_000
 
-    def close(self):
+    def close(self) -> None:
         """Close, and note whether all was read."""
         self.used_up = not self.read(1)
         super().close()
 
-    def seek(self, offset, whence=0):
+    def seek(self, offset: int, whence: int = 0) -> int:
         """Go to a place and return it; _Damaged after going back too often."""
         before = self.tell()
         after = super().seek(offset, whence)
@@ -68,13 +68,13 @@ class Log(ULog):
 
     class _MessageAddLogged(ULog._MessageAddLogged):
 
-        def _parse_format(self, formats):
+        def _parse_format(self, formats: Mapping[str, ULog.MessageFormat]) -> None:
             if _size(self.message_name, formats, 0) > _MOST_BYTES:
                 raise _Damaged(f'its format {self.message_name} is too large')
             super()._parse_format(formats)
 
 
-def _size(name, formats, depth):
+def _size(name: str, formats: Mapping[str, ULog.MessageFormat], depth: int) -> int:
     """Return the bytes of a message of a format, of many more where it nests without end."""
     if depth > 8:
         return _MOST_BYTES + 1
@@ -112,7 +112,7 @@ def _parsed(content: _Content, topics: Collection[str]) -> Log:
 def _whole(data: bytes, topics: Collection[str]) -> Log | None:
     """Return the Log of the bytes of a log, or None where these are not plainly whole."""
     messages = walk(data)
-    begins = {}     # of the samples of each subscription
+    begins: dict[int, int] = {}     # of the samples of each subscription
     for kind, at, size in messages.others:
         if kind == _FLAGS and any(data[at:at + size][_OFFSETS]):
             return None
@@ -131,13 +131,13 @@ def _whole(data: bytes, topics: Collection[str]) -> Log | None:
     if log.file_corruption or not content.used_up:
         return None
     for topic in log.data_list:
-        kind = np.dtype([(field.field_name, ULog._UNPACK_TYPES[field.type_str][2])
-                         for field in topic.field_data]).newbyteorder('<')
+        row = np.dtype([(field.field_name, ULog._UNPACK_TYPES[field.type_str][2])
+                        for field in topic.field_data]).newbyteorder('<')
         mine = messages.numbers == topic.msg_id
-        if (messages.sizes[mine] != kind.itemsize + 2).any():
+        if (messages.sizes[mine] != row.itemsize + 2).any():
             return None
-        rows = rows_of(data, messages.data[mine] + 2, kind.itemsize).view(kind)[:, 0]
-        topic.data = {name: rows[name] for name in kind.names}
+        rows = rows_of(data, messages.data[mine] + 2, row.itemsize).view(row)[:, 0]
+        topic.data = {name: rows[name] for name in row.names or ()}
     log.cut_off = messages.cut
     return log
 

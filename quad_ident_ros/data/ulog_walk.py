@@ -53,8 +53,8 @@ def walk(data: bytes) -> Messages:
         at += 3 + size
     begins = np.array(places, np.int64)
     content = np.frombuffer(data, np.uint8)
-    return Messages(begins, *(_words(content, begins + offset) for offset in (0, -3)),
-                    others, whole, whole and at - HEADER.size < end)
+    return Messages(begins, _words(content, begins), _words(content, begins - 3), others,
+                    whole, whole and at - HEADER.size < end)
 
 
 def _words(content: np.ndarray, places: np.ndarray) -> np.ndarray:

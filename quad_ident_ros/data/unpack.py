@@ -4,12 +4,15 @@
 
 import bz2
 from collections import OrderedDict
+from collections.abc import Callable, Collection, Generator
 from heapq import merge
-from io import BytesIO
+from io import BufferedIOBase, BytesIO
 from os import SEEK_CUR
 from types import SimpleNamespace
+from typing import BinaryIO, Literal
 
 from lz4.frame import LZ4FrameDecompressor
+from rosbags.interfaces import Connection
 from rosbags.rosbag1 import reader as reader1
 from rosbags.rosbag2 import reader, storage_mcap
 from rosbags.rosbag2.errors import ReaderError
@@ -22,28 +25,28 @@ class TooLarge(ReaderError, Reason):
     """Something unpacks to more than it may."""
 
 
-def _bounded(unpack):
+def _bounded(unpack: Callable[[bytes, int], bytes]) -> Callable[[bytes, int], bytes]:
     """Return a function that unpacks data of the stated size and no more."""
-    def within(data, size):
+    def within(data: bytes, size: int) -> bytes:
         if size > limits.PART:
             raise TooLarge(f'a chunk says that it unpacks to {_in_mb(size)}')
         return unpack(data, size + 1)
     return within
 
 
-def _in_mb(size):
+def _in_mb(size: float) -> str:
     return f'{size / 2 ** 20:.3g} MB'
 
 
-def _zstd(data, most_bytes):
+def _zstd(data: bytes, most_bytes: int) -> bytes:
     return _zstd_module.ZstdDecompressor().decompress(data, max_length=most_bytes)
 
 
-def _lz4(data, most_bytes):
+def _lz4(data: bytes, most_bytes: int) -> bytes:
     return LZ4FrameDecompressor().decompress(data, max_length=most_bytes)
 
 
-def _message(data):
+def _message(data: bytes) -> bytes:
     """Return a message unpacked."""
     machine = _zstd_module.ZstdDecompressor()
     message = machine.decompress(data, max_length=limits.PART)
@@ -52,7 +55,7 @@ def _message(data):
     return message
 
 
-def _open(file, mode):
+def _open(file: BinaryIO, mode: Literal['r', 'rb']) -> '_File':
     packed = file.seek(0, 2)
     file.seek(0)
     return _File(_zstd_module.open(file, mode), limits.most(packed))
@@ -61,10 +64,10 @@ def _open(file, mode):
 class _File:
     """A packed file that is read up to a limit."""
 
-    def __init__(self, file, limit):
+    def __init__(self, file: BufferedIOBase, limit: int) -> None:
         self._file, self._limit, self._done = file, limit, 0
 
-    def read(self, size):
+    def read(self, size: int) -> bytes:
         """Return the next bytes; TooLarge beyond the limit."""
         data = self._file.read(size)
         self._done += len(data)
@@ -72,21 +75,23 @@ class _File:
             raise TooLarge(f'the file unpacks to over {_in_mb(self._limit)}')
         return data
 
-    def __enter__(self):
+    def __enter__(self) -> '_File':
         """Return the file."""
         return self
 
-    def __exit__(self, *_):
+    def __exit__(self, *_: object) -> None:
         """Close the file."""
         self._file.close()
 
 
 _zstd_module = storage_mcap.zstd
 storage_mcap.DECOMPRESSORS.update(zstd=_bounded(_zstd), lz4=_bounded(_lz4))
-reader.zstd = SimpleNamespace(decompress=_message, open=_open)
+reader.zstd = SimpleNamespace(  # type: ignore[assignment]  # rosbags takes a limit nowhere else
+    decompress=_message, open=_open)
 
 
-def _entry(chunk, entry, connected):
+def _entry(chunk: BinaryIO, entry: reader1.IndexData, connected: dict[int, Connection]
+           ) -> tuple[Connection, int, bytes]:
     """Return (connection, time in ns, data) of an entry of the index of an unpacked chunk."""
     chunk.seek(entry.offset)
     header = reader1.Header.read(chunk)
@@ -104,14 +109,15 @@ def _entry(chunk, entry, connected):
 class BoundedReader1(reader1.Reader):
     """A reader of ROS 1 bags whose chunks and index are no larger than the file can mean."""
 
-    def open(self):
+    def open(self) -> None:
         """Open the bag."""
         self._packed = self.path.stat().st_size
         self._left = limits.most(self._packed)
         self._index = 0
         super().open()
 
-    def messages(self, connections=(), start=None, stop=None):
+    def messages(self, connections: Collection[Connection] = (), start: int | None = None,
+                 stop: int | None = None) -> Generator[tuple[Connection, int, bytes], None, None]:
         """
         Yield (connection, time in ns, data) of messages by time, from start to before stop.
 
@@ -119,8 +125,10 @@ class BoundedReader1(reader1.Reader):
         those that were used last stay unpacked, as far as one chunk may unpack to.
         """
         self._check_open()
+        assert self.bio is not None
         connected = {one.id: one for one in self.connections}
-        unpacked, size = OrderedDict(), 0
+        unpacked: OrderedDict[int, BytesIO] = OrderedDict()
+        size = 0
         for entry in merge(*(self.indexes[one.id] for one in connections or self.connections)):
             if start is not None and entry.time < start:
                 continue
@@ -137,24 +145,25 @@ class BoundedReader1(reader1.Reader):
             unpacked.move_to_end(entry.chunk_pos)
             yield _entry(unpacked[entry.chunk_pos], entry, connected)
 
-    def read_chunk(self):
+    def read_chunk(self) -> reader1.Chunk:
         """Return the next chunk, which unpacks within limits."""
         chunk = super().read_chunk()
         return chunk._replace(decompressor=self._within(chunk.decompressor))
 
-    def read_index_data(self, pos, indexes):
+    def read_index_data(self, pos: int, indexes: dict[int, list[reader1.IndexData]]) -> None:
         """Read an index, of which all together are no longer than the file."""
+        assert self.bio is not None
         before = self.bio.tell()
         super().read_index_data(pos, indexes)
         self._index += self.bio.tell() - before
         if self._index > self._packed:
             raise TooLarge('its index names the same messages again and again')
 
-    def _within(self, unpack):
+    def _within(self, unpack: Callable[[bytes], bytes]) -> Callable[[bytes], bytes]:
         machine = {reader1.bz2_decompress: bz2.BZ2Decompressor,
                    reader1.lz4_decompress: LZ4FrameDecompressor}.get(unpack)
 
-        def bounded(data):
+        def bounded(data: bytes) -> bytes:
             unpacked = (data if machine is None else
                         machine().decompress(data, max_length=limits.PART + 1))
             if len(unpacked) > limits.PART:

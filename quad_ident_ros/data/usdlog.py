@@ -7,9 +7,11 @@ Source: the firmware's documentation of the micro-SD card deck, and its decoder 
 """
 
 from array import array
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 import re
+from typing import TypeAlias
 from zlib import crc32
 
 import numpy as np
@@ -26,25 +28,27 @@ _LATEST = 366 * 86400 * 10 ** 9     # ns, a year after the start of the vehicle
 _VARIABLE = re.compile(r'(.+)\((.)\)', re.ASCII)
 _AGAIN = 'copy it from the card again'
 
+_Kind: TypeAlias = tuple[str, np.dtype, tuple[tuple[str, str], ...]]
+
 
 @dataclass(frozen=True, eq=False)
 class Event:
     """A kind of event: its name, the letters of its variables' types, stamps ns, and values."""
 
     name: str
-    types: dict
+    types: dict[str, str]
     stamps: np.ndarray
-    values: dict
+    values: dict[str, np.ndarray]
 
 
-def recognises(start):
+def recognises(start: bytes) -> bool:
     """Return whether first bytes are those of such a log."""
     return (len(start) > 8 and start[0] == MAGIC and 1 <= start[1] < 16 and start[2] == 0
             and 1 <= int.from_bytes(start[3:5], 'little') <= _MOST_EVENTS
             and 32 < start[7] < 127)
 
 
-def read_events(path):
+def read_events(path: str | Path) -> tuple[tuple[Event, ...], tuple[str, ...]]:
     """
     Return (the Events of a log, notes on what is damaged).
 
@@ -87,9 +91,12 @@ def read_events(path):
     return tuple(events), tuple(notes)
 
 
-def _header(path, data, stamp):
+def _header(path: str | Path, data: bytes, stamp: str) -> tuple[dict[int, _Kind], int]:
     """Return id -> (name, type of a row, ((variable, letter), ...)), and where the rows begin."""
-    def number():
+    at = 3
+    kinds: dict[int, _Kind] = {}
+
+    def number() -> int:
         nonlocal at
         if at + 2 > len(data):
             raise InputError(f'{path}: this Crazyflie log ends in its header, at byte {at}; '
@@ -97,7 +104,7 @@ def _header(path, data, stamp):
         at += 2
         return int.from_bytes(data[at - 2:at], 'little')
 
-    def text():
+    def text() -> str:
         nonlocal at
         end = data.find(0, at, at + _LONGEST)
         name = data[at:max(end, at)].decode('ascii', 'replace')
@@ -107,7 +114,6 @@ def _header(path, data, stamp):
         at = end + 1
         return name
 
-    at, kinds = 3, {}
     count = number()
     if not 1 <= count <= _MOST_EVENTS:
         raise InputError(f'{path}: the header of this Crazyflie log is damaged: it says that '
@@ -131,7 +137,8 @@ def _header(path, data, stamp):
     return kinds, at
 
 
-def _walk(data, at, end, sizes):
+def _walk(data: bytes, at: int, end: int, sizes: Mapping[int, int]
+          ) -> tuple[dict[int, 'array[int]'], int]:
     """Return id -> where its rows start, and where the walk through the rows ended."""
     starts = {number: array('q') for number in sizes}
     while at + 2 <= end:
@@ -144,7 +151,7 @@ def _walk(data, at, end, sizes):
     return starts, at
 
 
-def _rows(raw, starts, row):
+def _rows(raw: np.ndarray, starts: np.ndarray, row: np.dtype) -> np.ndarray:
     """Return the rows (n,) of a type that start at bytes of raw."""
     if not len(starts):
         return np.zeros(0, row)

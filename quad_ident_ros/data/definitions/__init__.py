@@ -9,14 +9,18 @@ version, and PACKAGE/NAME-start.msg the fields with which all versions begin.
 
 from functools import cache
 from importlib import resources
+from typing import TYPE_CHECKING
 
 from rosbags.typesys import get_types_from_msg
+
+if TYPE_CHECKING:
+    from rosbags.interfaces.typing import Typesdict
 
 START = 'start'
 
 
 @cache
-def layouts(msgtype):
+def layouts(msgtype: str) -> tuple[tuple[str, 'Typesdict'], ...]:
     """
     Return the definitions that ship of a message type: (version, field definitions) of each.
 

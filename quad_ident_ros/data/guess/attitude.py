@@ -57,8 +57,9 @@ def angles(draft: Draft) -> None:
     """Take roll, pitch and yaw where there is no quaternion."""
     if draft.attitude is not None:
         return
-    names = [draft.one(pattern) for pattern in ANGLE.values()]
-    if None in names:
+    asked = [draft.one(pattern) for pattern in ANGLE.values()]
+    names = [name for name in asked if name is not None]
+    if len(names) < len(ANGLE):
         return
     values = draft.values(names)
     units = {draft.units[name] for name in names}
@@ -110,10 +111,11 @@ def _order(draft: Draft, q: np.ndarray) -> str | None:
     level = [name for name, angle in tilt.items() if angle < LEVEL]
     if len(level) == 1 and max(tilt.values()) > TURNED:
         return level[0]
-    if draft.found[RATE] and draft.t is not None:
-        gyro = draft.values(draft.found[RATE])
+    rates = draft.found[RATE]
+    if rates and draft.t is not None:
+        gyro = draft.values(rates)
         close = {name: alike(*draft.turning(one, gyro)) for name, one in readings.items()}
-        best = max(close, key=close.get)
+        best = max(close, key=close.__getitem__)
         if close[best] > FOLLOWS and close[best] > min(close.values()) + CLEARER:
             return best
     return None
@@ -122,9 +124,10 @@ def _order(draft: Draft, q: np.ndarray) -> str | None:
 def _pitch_down(draft: Draft, names: Sequence[str], angles: np.ndarray) -> bool:
     """Return whether the pitch of angles (N, 3) rad has the other sign, by gyro or name."""
     named = bool(PITCH_DOWN.search(draft.names[names[1]]))
-    if not draft.found[RATE] or draft.t is None:
+    rates = draft.found[RATE]
+    if not rates or draft.t is None:
         return named
-    gyro = draft.values(draft.found[RATE])
+    gyro = draft.values(rates)
     close = [alike(*draft.turning(from_euler(*(angles * [1.0, sign, 1.0]).T), gyro))
              for sign in (1.0, -1.0)]
     if max(close) < FOLLOWS or abs(close[1] - close[0]) < CLEAR:

@@ -29,23 +29,24 @@ class Guess:
     data.motor_order.about_motors has it.
     """
 
-    mapping: Mapping = None
-    said: list = field(default_factory=list)
-    doubts: list = field(default_factory=list)
-    roles: list = field(default_factory=list)
-    candidates: dict = field(default_factory=dict)
+    mapping: Mapping = field(default_factory=Mapping)
+    said: list[str] = field(default_factory=list)
+    doubts: list[str] = field(default_factory=list)
+    roles: list[str] = field(default_factory=list)
+    candidates: dict[str | tuple[str, ...], list] = field(default_factory=dict)
     motors: dict = field(default_factory=dict)
 
 
 class Draft:
     """A guess that is being made: what each step takes is open to the next."""
 
-    def __init__(self, table: Table, given: Mapping | None) -> None:
+    def __init__(self, table: Table, given: Mapping) -> None:
         self.table, self.given = table, given
         self.guess = Guess()
-        self.columns, self.world, self.body = {}, given.world, given.body
-        self.order = given.quaternion
-        self.names, self.units = {}, {}
+        self.columns: dict[str, Column] = {}
+        self.world, self.body, self.order = given.world, given.body, given.quaternion
+        self.names: dict[str, str] = {}
+        self.units: dict[str, str] = {}
         for name in table.columns:
             self.names[name], self.units[name] = plain(name)
             said = table.units.get(name, '').lower()
@@ -53,8 +54,10 @@ class Draft:
                 self.units[name] = UNITS.get(said, said)
         self.free = [name for name in table.columns if not NOT.search(self.names[name])
                      and np.isfinite(table.columns[name]).sum() >= 2]
-        self.t = self.attitude = None       # (N,) s; (N, 4), scalar first
-        self.found = {}                     # columns of a group, or None, by the group
+        self.t: np.ndarray | None = None            # (N,) s
+        self.attitude: np.ndarray | None = None     # (N, 4), scalar first
+        # Columns of a group, or None, by the group.
+        self.found: dict[tuple[str, ...], list[str] | None] = {}
 
     def values(self, names: Sequence[str]) -> np.ndarray:
         """Return columns, (N, k), interpolated where rows of other streams lie in between."""
@@ -71,10 +74,12 @@ class Draft:
 
     def dt(self) -> np.ndarray:
         """Return the steps of the time, (N - 1,) s."""
+        assert self.t is not None
         return np.diff(self.t)
 
     def turning(self, attitude: np.ndarray, gyro: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the rates (n, 3) of attitudes and of the gyro, over the same steps in time."""
+        assert self.t is not None
         width = max(1, round(OVER / max(float(np.nanmedian(self.dt())), 1e-6)))
         if len(attitude) < 4 * width:
             width = 1
@@ -113,7 +118,7 @@ class Draft:
             return None
         return found[0] if found else None
 
-    def trio(self, group: Sequence[str], entries: str) -> list[str] | None:
+    def trio(self, group: tuple[str, ...], entries: str) -> list[str] | None:
         """Return the columns of a group of axes, of one prefix, or None."""
         whole = sorted((axes for axes in self._by_prefix(group, entries).values()
                         if len(axes) == len(entries)),
@@ -132,7 +137,7 @@ class Draft:
                 return [by_name[letter] for letter in bare]
         return None
 
-    def numbered(self, group: Sequence[str]) -> list[str] | None:
+    def numbered(self, group: tuple[str, ...]) -> list[str] | None:
         """
         Return the three columns of a group that are counted from 0 or 1, or None.
 
@@ -144,7 +149,7 @@ class Draft:
                 return [axes[axis] for axis in counted]
         return None
 
-    def _by_prefix(self, group: Sequence[str], entries: str
+    def _by_prefix(self, group: tuple[str, ...], entries: str
                    ) -> dict[tuple[str, str], dict[str, str]]:
         """Return the columns whose names are of a group: what is before them, axis -> name."""
         found: dict[tuple[str, str], dict[str, str]] = {}
@@ -157,7 +162,7 @@ class Draft:
                     found.setdefault((prefix, match.group(2)), {}).setdefault(axis, name)
         return found
 
-    def _same(self, group: Sequence[str], one: list[str], other: list[str]) -> bool:
+    def _same(self, group: tuple[str, ...], one: list[str], other: list[str]) -> bool:
         """Return whether the first of two trios is the plain one, or both say the same."""
         whole = re.compile(AXES[group].format('[wxyz0-4]'))
         if whole.fullmatch(self.names[one[-1]]) and not whole.fullmatch(self.names[other[-1]]):

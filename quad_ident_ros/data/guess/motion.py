@@ -29,8 +29,9 @@ def vectors(draft: Draft) -> None:
                    for group in (POSITION, VELOCITY, RATE, FORCE)}
     if draft.found[RATE] is None:
         turning = [draft.one(rf'(^|_){axis}_?(rate|speed|vel)$') for axis in TURNING]
-        if None not in turning:
-            draft.found[RATE] = turning
+        names = [name for name in turning if name is not None]
+        if len(names) == len(TURNING):
+            draft.found[RATE] = names
 
 
 def positions(draft: Draft) -> None:

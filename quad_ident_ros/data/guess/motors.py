@@ -109,8 +109,9 @@ def _numbered(draft: Draft, pattern: re.Pattern) -> list[list[str]]:
 
 def _corners(draft: Draft) -> list[str] | None:
     """Return the columns of four motors by their places, from front right to front left."""
-    found = [draft.one(CORNER.format(pattern)) for pattern in CORNERS.values()]
-    if None in found or len(set(found)) < 4:
+    asked = [draft.one(CORNER.format(pattern)) for pattern in CORNERS.values()]
+    found = [name for name in asked if name is not None]
+    if len(set(found)) < 4:
         return None
     draft.guess.motors = about_motors(quad(*AROUND), 'the names of the columns')
     return found

@@ -35,9 +35,10 @@ AXES = {
 TURNED = re.compile(r'(^|_)(ang|angular|gyro|rot)')
 """Of names that are of a rotation, which a velocity or a force is not."""
 
-BARE = {POSITION: (('x', 'y', 'z'), ('tx', 'ty', 'tz')),
-        VELOCITY: (('xdot', 'ydot', 'zdot'), ('x_dot', 'y_dot', 'z_dot')),
-        RATE: (('p', 'q', 'r'), ('gx', 'gy', 'gz'), ('g_x', 'g_y', 'g_z'))}
+BARE: dict[tuple[str, ...], tuple[tuple[str, ...], ...]] = {
+    POSITION: (('x', 'y', 'z'), ('tx', 'ty', 'tz')),
+    VELOCITY: (('xdot', 'ydot', 'zdot'), ('x_dot', 'y_dot', 'z_dot')),
+    RATE: (('p', 'q', 'r'), ('gx', 'gy', 'gz'), ('g_x', 'g_y', 'g_z'))}
 ANGLE = {'phi': r'(^|_)(roll|phi)$', 'theta': r'(^|_)(pitch|theta)$',
          'psi': r'(^|_)(yaw|psi|heading)$'}
 TURNING = ('roll', 'pitch', 'yaw')

@@ -7,6 +7,7 @@ One file per subject, each with checks (record, vehicle or None) -> findings, en
 COLUMNS or COMPARISONS.
 """
 
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -35,7 +36,9 @@ from quad_ident_ros.data.quality.clock import (
     velocity_offset,
 )
 from quad_ident_ros.data.quality.finding import as_caution, Finding, SEVERITIES
+from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.vehicle import Vehicle
 
 COLUMNS = (columns.known, columns.incomplete, columns.differentiated, columns.frozen,
            columns.dead, columns.quaternions, columns.possible, columns.negative, timing.slow,
@@ -60,7 +63,7 @@ __all__ = ['cautions', 'COLUMNS', 'COMPARISONS', 'clock_offset', 'ClockOffset', 
            'SEVERITIES', 'velocity_offset']
 
 
-def findings(record, vehicle=None):
+def findings(record: FlightRecord, vehicle: Vehicle | None = None) -> tuple[Finding, ...]:
     """
     Return the Findings on a flight record, the gravest first.
 
@@ -74,19 +77,20 @@ def findings(record, vehicle=None):
     return gravest_first(found)
 
 
-def gravest_first(found):
+def gravest_first(found: Iterable[Finding]) -> tuple[Finding, ...]:
     """Return Findings by their severity."""
     return tuple(sorted(found, key=lambda finding: -SEVERITIES.index(finding.severity)))
 
 
-def refuse_unfit(record, vehicle):
+def refuse_unfit(record: FlightRecord, vehicle: Vehicle | None) -> tuple[Finding, ...]:
     """Return the Findings on a record; InputError where it is too faulty to diagnose."""
     found = findings(record, vehicle)
     refuse_errors(record, found)
     return found
 
 
-def cautions(record, vehicle, doubtful=()):
+def cautions(record: FlightRecord, vehicle: Vehicle | None, doubtful: Collection[str] = ()
+             ) -> list[dict]:
     """
     Return the warnings on a record that can be diagnosed, as data.
 
@@ -103,7 +107,7 @@ def cautions(record, vehicle, doubtful=()):
             if finding.severity == 'warning' or finding.code in TOLD]
 
 
-def refuted(records, vehicle):
+def refuted(records: Sequence[FlightRecord], vehicle: Vehicle | None) -> tuple[str, ...]:
     """
     Return the codes of errors that cannot be so, by another one of the flights of a vehicle.
 
@@ -117,7 +121,7 @@ def refuted(records, vehicle):
                                for code in rotors.confirmed(record, vehicle)))
 
 
-def refuse_errors(record, found):
+def refuse_errors(record: FlightRecord, found: Iterable[Finding]) -> None:
     """Raise InputError where one of the Findings on a record is an error."""
     for finding in found:
         if finding.severity == 'error':

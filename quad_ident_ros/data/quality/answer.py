@@ -8,6 +8,7 @@ What changes from sample to sample in both is hardly motion, so it shows the tim
 them, no matter what the vehicle does with the commands and how late.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,7 +17,9 @@ from scipy.interpolate import CubicSpline
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.once import once
 from quad_ident_ros.data.quality.series import attitudes_of
+from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.model.attitude import conjugate, continuous, product, rotate
+from quad_ident_ros.model.vehicle import Vehicle
 
 REACH = 0.1         # s, the largest lag looked for
 SPACING = 2         # samples of the second differences, which see most at a quarter of the rate
@@ -59,7 +62,7 @@ class Answer:
 
 
 @once
-def answer_of(record):
+def answer_of(record: FlightRecord) -> Answer | None:
     """
     Return the Answer of the commands of a record to its states, or None where there is none.
 
@@ -93,7 +96,8 @@ def answer_of(record):
     return Answer(float(lag * period), std, float(drift), float(share), period)
 
 
-def _series(record):
+def _series(record: FlightRecord
+            ) -> tuple[float, np.ndarray, np.ndarray, np.ndarray, np.ndarray] | None:
     """
     Return what changes from sample to sample on an even grid, or None without a controller's.
 
@@ -127,26 +131,27 @@ def _series(record):
             *_spread(given, told, place))
 
 
-def _calm(values, known):
+def _calm(values: np.ndarray, known: np.ndarray) -> np.ndarray:
     """Return which values (N, k) are no jumps beside the usual ones, (N,)."""
     usual = np.median(np.abs(values[known]), axis=0)
     return (np.abs(values) <= FAR * 1.4826 * usual).all(axis=1)
 
 
-def _second(values):
+def _second(values: np.ndarray) -> np.ndarray:
     """Return second differences (N - 2 SPACING, k) of values (N, k)."""
     n = SPACING
     return values[2 * n:] - 2.0 * values[n:-n] + values[:-2 * n]
 
 
-def _spread(values, known, place):
+def _spread(values: np.ndarray, known: np.ndarray, place: np.ndarray
+            ) -> tuple[np.ndarray, np.ndarray]:
     """Return values (N, k) at their places on a grid, 0 elsewhere, and whether known there."""
     out, there = np.zeros((place[-1] + 1, values.shape[1])), np.zeros(place[-1] + 1, bool)
     out[place[known]], there[place[known]] = values[known], True
     return out, there
 
 
-def _whole_lags(states, commands, reach):
+def _whole_lags(states: np.ndarray, commands: np.ndarray, reach: int) -> np.ndarray:
     """Return the share of commands (N, n) that states (N, k) so much earlier explain, (R,)."""
     size = len(states) + reach
     ahead, after = np.fft.rfft(states, size, axis=0), np.fft.rfft(commands, size, axis=0)
@@ -160,7 +165,8 @@ def _whole_lags(states, commands, reach):
     return np.sum(cross * np.linalg.solve(gram, cross), axis=(1, 2)) / power
 
 
-def _refined(spline, there, commands, told, lag):
+def _refined(spline: CubicSpline, there: np.ndarray, commands: np.ndarray, told: np.ndarray,
+             lag: float) -> tuple[np.ndarray, np.ndarray, float] | None:
     """
     Return what is found around a lag in samples, or None.
 
@@ -181,9 +187,10 @@ def _refined(spline, there, commands, told, lag):
         gain = _gain(model, target)
         said, slope = model @ gain, -spline(at[known], 1) @ gain
         rest = target - said
-        step, errors = _step(model, rest, [slope, slope * along[known, None]])
-        if step is None or _smooth(said, known):
+        better = _step(model, rest, [slope, slope * along[known, None]])
+        if better is None or _smooth(said, known):
             return None
+        step, errors = better
         found = now, errors, 1.0 - np.sum(rest ** 2) / np.sum(target ** 2)
         now = now + np.clip(step, -0.5, 0.5)
         if abs(now[0] - begin) > SPACING:
@@ -191,14 +198,14 @@ def _refined(spline, there, commands, told, lag):
     return found
 
 
-def _gain(model, target):
+def _gain(model: np.ndarray, target: np.ndarray) -> np.ndarray:
     """Return what a target (N, n) is in terms of a model (N, k) by least squares, (k, n)."""
     gram = model.T @ model
     gram += RIDGE * np.trace(gram) * np.eye(len(gram))
     return np.linalg.solve(gram, model.T @ target)
 
 
-def _smooth(said, known):
+def _smooth(said: np.ndarray, known: np.ndarray) -> bool:
     """Return whether commands (K, n), at the known ones of samples (N,), are motion."""
     next_to = np.flatnonzero(known[:-1] & known[1:])
     row = np.cumsum(known) - 1
@@ -206,19 +213,20 @@ def _smooth(said, known):
     return np.sum(one * other) > SMOOTH * np.sqrt(np.sum(one ** 2) * np.sum(other ** 2))
 
 
-def _step(model, rest, slopes):
-    """Return the step (2,) along slopes that lessens a rest most, and its standard errors."""
+def _step(model: np.ndarray, rest: np.ndarray, slopes: Sequence[np.ndarray]
+          ) -> tuple[np.ndarray, np.ndarray] | None:
+    """Return the step (2,) along slopes that lessens a rest most, its standard errors; or None."""
     # What other gains explain as well says nothing.
-    slopes = np.stack([one - model @ _gain(model, one) for one in slopes])
-    curvature = np.tensordot(slopes, slopes, ([1, 2], [1, 2]))
+    free = np.stack([one - model @ _gain(model, one) for one in slopes])
+    curvature = np.tensordot(free, free, ([1, 2], [1, 2]))
     if not np.linalg.cond(curvature) < WORST:
-        return None, None
+        return None
     inverse = np.linalg.inv(curvature)
-    return (inverse @ np.tensordot(slopes, rest, 2),
+    return (inverse @ np.tensordot(free, rest, 2),
             np.sqrt(np.mean(rest ** 2) * np.diag(inverse)))
 
 
-def commands(record, vehicle):
+def commands(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """Find commands that are stamped before the states that they answer."""
     found = answer_of(record)
     if (found is None or found.share < CLEAR

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Clock offset and drift between the streams of a record, with their uncertainty."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,7 +14,9 @@ from quad_ident_ros.data.quality.frames import best_reading
 from quad_ident_ros.data.quality.glitches import jumps
 from quad_ident_ros.data.quality.once import once
 from quad_ident_ros.data.quality.series import Grid
+from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.model.attitude import conjugate, rotate
+from quad_ident_ros.model.vehicle import Vehicle
 
 WINDOW = 4.0      # s, of one estimate
 REACH = 0.5       # s, the largest offset looked for
@@ -53,7 +56,7 @@ class ClockOffset:
 
 
 @once
-def clock_offset(record):
+def clock_offset(record: FlightRecord) -> ClockOffset | None:
     """
     Return the ClockOffset of the attitude against the gyro, or None where it is not visible.
 
@@ -73,7 +76,7 @@ def clock_offset(record):
                    answers=True)
 
 
-def _without_jumps(record):
+def _without_jumps(record: FlightRecord) -> FlightRecord:
     """Return a record without the few samples whose attitude is off: its slope there is wrong."""
     off = jumps(record)
     if not off.any() or off.mean() > FEW:
@@ -83,7 +86,7 @@ def _without_jumps(record):
 
 
 @once
-def velocity_offset(record):
+def velocity_offset(record: FlightRecord) -> ClockOffset | None:
     """
     Return the ClockOffset of the position against the velocity, or None where it is not visible.
 
@@ -98,7 +101,7 @@ def velocity_offset(record):
 
 
 @once
-def command_offset(record):
+def command_offset(record: FlightRecord) -> ClockOffset | None:
     """
     Return the ClockOffset of the accelerometer against the commands, or None.
 
@@ -113,7 +116,7 @@ def command_offset(record):
     return _offset(grid, grid.smooth(grid.signal('az')), grid.smooth(thrust), beside=_air(grid))
 
 
-def _air(grid):
+def _air(grid: Grid) -> np.ndarray:
     """Return what forces of the air along body z are in proportion to, (N, 3); (N, 0) if none."""
     _, attitude = best_reading(grid.record)
     if attitude is None or not grid.record.has('vx', 'vy', 'vz'):
@@ -123,23 +126,24 @@ def _air(grid):
     return np.stack([z, np.sqrt(x * x + y * y + z * z) * z, x * x + y * y], axis=-1)
 
 
-def _centred(signal):
+def _centred(signal: np.ndarray) -> np.ndarray:
     """Return a signal (N, k) about its mean: a bias is no offset."""
     return signal - signal.mean(axis=0)
 
 
-def _without(beside):
+def _without(beside: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
     """Return the function that takes the mean and signals (N, m) out of others, (N, k)."""
     basis = np.linalg.qr(_centred(beside))[0] if beside.shape[1] else beside
 
-    def rest(signal):
+    def rest(signal: np.ndarray) -> np.ndarray:
         centred = _centred(signal)
         return centred - basis @ (basis.T @ centred)
 
     return rest
 
 
-def _offset(grid, late, early, answers=False, beside=None):
+def _offset(grid: Grid, late: np.ndarray, early: np.ndarray, answers: bool = False,
+            beside: np.ndarray | None = None) -> ClockOffset | None:
     """
     Return the ClockOffset of one signal (N, k) against another on a grid, or None.
 
@@ -172,12 +176,12 @@ def _offset(grid, late, early, answers=False, beside=None):
     return ClockOffset(offset, wider * std, drift, wider * drift_std, t, offsets, wider * stds)
 
 
-def _whole_shift(late, early, good, reach):
+def _whole_shift(late: np.ndarray, early: np.ndarray, good: np.ndarray, reach: int) -> int | None:
     """Return the shift (samples) with the largest correlation, or None where it is small."""
     late, early, middle = _centred(late), _centred(early), len(late) - 1
     kept, all_of = good[:, None].astype(float), np.ones((len(early), 1))
 
-    def along(now, before):
+    def along(now: np.ndarray, before: np.ndarray) -> np.ndarray:
         """Return the sums of one signal times another one so much before, (2 reach + 1, k)."""
         sums = fftconvolve(now, before[::-1], axes=0)
         padded = np.pad(sums, ((reach, reach), (0, 0)))
@@ -196,7 +200,9 @@ def _whole_shift(late, early, good, reach):
     return best - reach if alike[best] > SURE else None
 
 
-def _refined(t, spline, late, slopes, start, period, rest_of):
+def _refined(t: np.ndarray, spline: CubicSpline, late: np.ndarray, slopes: np.ndarray,
+             start: float, period: float, rest_of: Callable[[np.ndarray], np.ndarray]
+             ) -> tuple[float, float] | None:
     """
     Return the offset and its standard error in a window, or None.
 
@@ -232,14 +238,14 @@ def _refined(t, spline, late, slopes, start, period, rest_of):
     return offset, max(std, FINEST)
 
 
-def _displaced(grid, spline, late, offsets):
+def _displaced(grid: Grid, spline: CubicSpline, late: np.ndarray, offsets: np.ndarray) -> float:
     """
     Return by how much at most the residuals, earlier or later, would move the offset, s.
 
     Where it lies it does not move it, for so the offset was chosen. What has nothing to do with
     the motion is, displaced, as large as its standard error; what the motion answers to is more.
     """
-    def inside(signal):
+    def inside(signal: np.ndarray) -> np.ndarray:
         return np.where(grid.good[:, None], signal - signal[grid.good].mean(axis=0), 0.0)
 
     model, slope = inside(spline(grid.t - offsets)), inside(-spline(grid.t - offsets, 1))
@@ -254,12 +260,12 @@ def _displaced(grid, spline, late, offsets):
     return most / max(np.sum(slope ** 2), 1e-300)
 
 
-def _alike(one, other):
+def _alike(one: np.ndarray, other: np.ndarray) -> float:
     scale = np.sqrt(np.sum(one ** 2) * np.sum(other ** 2))
     return np.sum(one * other) / scale if scale > 0 else 0.0
 
 
-def _long_run(score, lags):
+def _long_run(score: np.ndarray, lags: int) -> float:
     """Return the variance of the sum of a dependent series (Bartlett weights)."""
     total, most = np.sum(score ** 2), min(lags, len(score) - 1)
     if most > MANY_LAGS:
@@ -271,7 +277,8 @@ def _long_run(score, lags):
     return max(total, 0.1 * np.sum(score ** 2), 1e-30)
 
 
-def _line(t, offsets, stds):
+def _line(t: np.ndarray, offsets: np.ndarray, stds: np.ndarray
+          ) -> tuple[float, float, float, float]:
     """Return offset, std, drift, drift_std of a weighted straight line; scatter widens both."""
     weight = 1.0 / stds ** 2
     if len(t) < 3:
@@ -285,7 +292,7 @@ def _line(t, offsets, stds):
     return float(offset), float(std), float(drift), float(drift_std)
 
 
-def attitude(record, vehicle):
+def attitude(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """Find an offset, a drift or a wandering between attitude and gyro."""
     found = clock_offset(record)
     if found is None:
@@ -311,7 +318,7 @@ def attitude(record, vehicle):
     return result
 
 
-def velocity(record, vehicle):
+def velocity(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """Find an offset between position and velocity."""
     found = velocity_offset(record)
     if found is None or abs(found.offset) <= max(SEVERAL * found.std, 0.002):
@@ -319,7 +326,7 @@ def velocity(record, vehicle):
     return [_apart(found, 'position against velocity', 'position', 'velocity')]
 
 
-def _apart(found, where, late, early):
+def _apart(found: ClockOffset, where: str, late: str, early: str) -> Finding:
     """Return the Finding of a ClockOffset of one stream against another."""
     grave = abs(found.offset) > 0.1
     return Finding(
@@ -330,7 +337,7 @@ def _apart(found, where, late, early):
         + ('' if grave else '; fit and diagnosis move the one that is late'))
 
 
-def commands(record, vehicle):
+def commands(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """Find commands that act before they are given, or long after."""
     found = command_offset(record)
     if found is None:

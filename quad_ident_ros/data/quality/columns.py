@@ -2,12 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Columns that are missing, that stand still, or whose values no flight has."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from quad_ident_ros.data.cutting import without
 from quad_ident_ros.data.differentiated import DIFFERENTIATED, HALF, missing_motion
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.record import EULER, FlightRecord, QUATERNION, unit
+from quad_ident_ros.model.vehicle import Vehicle
 
 GROUPS = (('px', 'py', 'pz'), ('vx', 'vy', 'vz'), QUATERNION, ('wx', 'wy', 'wz'))
 """Columns of the motion; one alone is of little use, except the height."""
@@ -21,7 +24,7 @@ LARGEST_OTHER = 1e6                 # in m/s, rad/s, V, ...; wrong units alone l
 SHORTEST, OFF = 0.5, 0.02           # length of a quaternion: none; off 1
 
 
-def known(record, vehicle):
+def known(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """Find records without any column of the format."""
     if any(unit(name) for name in record.columns):
         return []
@@ -31,7 +34,7 @@ def known(record, vehicle):
                     'name the columns as docs/records.md does: px, py, pz, qw, ...')]
 
 
-def incomplete(record, vehicle):
+def incomplete(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """Find attitudes, rates and velocities of which a component is missing."""
     found = []
     for names in GROUPS:
@@ -45,7 +48,7 @@ def incomplete(record, vehicle):
     return found
 
 
-def differentiated(record, vehicle):
+def differentiated(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """Find velocity and rate that were not recorded, and are taken from position and attitude."""
     pairs = {'velocity': ('vx, vy, vz', 'the position'), 'rate': ('wx, wy, wz', 'the attitude')}
     return [Finding('differentiated', 'info', pairs[group][0],
@@ -54,7 +57,7 @@ def differentiated(record, vehicle):
             for group in record.info.get(DIFFERENTIATED, missing_motion(record))]
 
 
-def frozen(record, vehicle):
+def frozen(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """Find records in which position, velocity, attitude and rate never change."""
     names = [name for names in GROUPS for name in names if record.has(name)]
     if not names or np.any(np.diff(record.stack(*names), axis=0)):
@@ -63,7 +66,7 @@ def frozen(record, vehicle):
                     'the recorder was stuck', 'check that the streams run, and record again')]
 
 
-def dead(record, vehicle):
+def dead(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """Find streams that never change while another one of the same motion does."""
     found = []
     for one, other in (('velocity', 'position'), ('rate', 'attitude'), ('position', 'velocity'),
@@ -85,11 +88,11 @@ def dead(record, vehicle):
     return found
 
 
-def _changes(record, names):
+def _changes(record: FlightRecord, names: Sequence[str]) -> bool:
     return bool(np.any(np.diff(record.stack(*names), axis=0)))
 
 
-def negative(record, vehicle):
+def negative(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """Find speeds of rotors below zero, and voltages that are not above."""
     found = []
     for name, values in record.columns.items():
@@ -104,7 +107,7 @@ def negative(record, vehicle):
     return found + (_no_voltage(record) if record.has('vbat') else [])
 
 
-def _no_voltage(record):
+def _no_voltage(record: FlightRecord) -> list[Finding]:
     """Find voltages that are not above zero: of a sensor that is missing, or that drops out."""
     voltage = record.columns['vbat']
     if not np.nanmedian(voltage) > 0.0:
@@ -120,7 +123,7 @@ def _no_voltage(record):
                     without(record.t, bad, 'leave the column vbat out'))]
 
 
-def quaternions(record, vehicle):
+def quaternions(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """Find quaternions that are zero or not of unit length."""
     if not record.has(*QUATERNION):
         return []
@@ -142,7 +145,7 @@ def quaternions(record, vehicle):
                     'divide it by its length, as all commands do, and see what writes it')]
 
 
-def possible(record, vehicle):
+def possible(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """Find values that are too large for any flight in any unit."""
     found = []
     for name, values in record.columns.items():
@@ -156,7 +159,7 @@ def possible(record, vehicle):
     return found
 
 
-def believable(record):
+def believable(record: FlightRecord) -> FlightRecord:
     """Return a record without the signals that hold a value which no flight has."""
     spoilt = {name for name, values in record.columns.items() if _too_large(name, values).any()}
     if not spoilt:
@@ -167,8 +170,9 @@ def believable(record):
                                    if name not in spoilt}, record.info)
 
 
-def _too_large(name, values):
+def _too_large(name: str, values: np.ndarray) -> np.ndarray:
     """Return where a column (N,) holds what no flight has, (N,) bool; unknown ones never do."""
-    if unit(name) is None:
+    said = unit(name)
+    if said is None:
         return np.zeros(len(values), bool)
-    return np.abs(values) > LARGEST.get(unit(name), LARGEST_OTHER)
+    return np.abs(values) > LARGEST.get(said, LARGEST_OTHER)

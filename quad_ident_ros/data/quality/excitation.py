@@ -6,6 +6,8 @@ import numpy as np
 
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.series import Grid
+from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.model.vehicle import Vehicle
 
 LEAST = {'roll': 0.05, 'pitch': 0.05, 'yaw': 0.1, 'vertical': 0.1, 'horizontal': 0.3}
 """Least excitation: rms body rate, rad/s; rms vertical acceleration, m/s^2; speed, m/s."""
@@ -15,7 +17,7 @@ UNTOLD = {'roll': 'Ixx and roll moments', 'pitch': 'Iyy and pitch moments',
           'horizontal': 'drag'}
 
 
-def excitation(record):
+def excitation(record: FlightRecord) -> dict[str, float]:
     """
     Return the excitation of each axis that the record has the columns for, as LEAST has it.
 
@@ -25,7 +27,7 @@ def excitation(record):
     grid = Grid.of(record)
     if grid is None:
         return {}
-    found = {}
+    found: dict[str, float] = {}
     if record.has('wx', 'wy', 'wz'):
         rate = grid.smooth(grid.signal('wx', 'wy', 'wz'))[grid.good]
         found.update(zip(('roll', 'pitch', 'yaw'), rate.std(axis=0).tolist(), strict=True))
@@ -37,7 +39,7 @@ def excitation(record):
     return found
 
 
-def axes(record, vehicle):
+def axes(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """Find axes that are hardly moved."""
     units = {'vertical': 'm/s^2', 'horizontal': 'm/s'}
     return [Finding('excitation', 'info', name,

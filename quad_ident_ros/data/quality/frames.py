@@ -8,8 +8,9 @@ from quad_ident_ros.data.frames import body_vector, world_vector
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.once import once
 from quad_ident_ros.data.quality.series import correlation, explained, Grid, is_rather, WIDTH
-from quad_ident_ros.data.record import QUATERNION
+from quad_ident_ros.data.record import FlightRecord, QUATERNION
 from quad_ident_ros.model.attitude import conjugate, rotate
+from quad_ident_ros.model.vehicle import Vehicle
 
 SURE, BETTER = 0.7, 0.3   # correlation that an explanation needs, and its lead
 STILL = 1e-6              # rad/s rms: an attitude that does not turn, but for rounding
@@ -20,7 +21,7 @@ TURN = ('turn the world into ENU (x east, y north, z up) and the body into FLU, 
         'world: NED, body: FRD in a mapping')
 
 
-def _reorder(q):
+def _reorder(q: np.ndarray) -> np.ndarray:
     return q[:, [3, 0, 1, 2]]
 
 
@@ -33,7 +34,7 @@ READINGS = {
 """What the four quaternion columns may hold, and how to make body to world, w first, of it."""
 
 
-def readings(grid):
+def readings(grid: Grid) -> dict[str, tuple[np.ndarray, float]]:
     """Return reading -> (attitude (N, 4), correlation of its rate with the gyro's)."""
     q = grid.attitude()
     if q is None or not grid.record.has(*QUATERNION):
@@ -49,12 +50,12 @@ def readings(grid):
     return found
 
 
-def _still(grid, attitude):
+def _still(grid: Grid, attitude: np.ndarray) -> bool:
     return np.sqrt(np.mean(grid.rate_of(attitude)[grid.good] ** 2)) < STILL
 
 
 @once
-def best_reading(record):
+def best_reading(record: FlightRecord) -> tuple[str, np.ndarray] | tuple[None, None]:
     """
     Return (name, attitude on the Grid) of the reading of a record to go by, or twice None.
 
@@ -70,13 +71,13 @@ def best_reading(record):
     return best, found[best][0]
 
 
-def quaternion(record, vehicle):
+def quaternion(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """Find quaternions in another order or direction, and rates about other body axes."""
     grid = Grid.of(record)
     if grid is None or not record.has(*QUATERNION, 'wx', 'wy', 'wz'):
         return []
     name, attitude = best_reading(record)
-    if attitude is None or _still(grid, attitude):
+    if name is None or attitude is None or _still(grid, attitude):
         return []
     if name != 'as it is':
         code = {'x, y, z, w': 'quaternion_order', 'world to body': 'quaternion_inverse'}
@@ -99,7 +100,7 @@ def quaternion(record, vehicle):
             for axis in _opposed(rate, gyro)]
 
 
-def rate_in_world(record, vehicle):
+def rate_in_world(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """Find rates about the axes of the world: turned back by the attitude they are the body's."""
     grid = Grid.of(record)
     if grid is None or not record.has(*QUATERNION, 'wx', 'wy', 'wz'):
@@ -119,13 +120,13 @@ def rate_in_world(record, vehicle):
                     'of the attitude')]
 
 
-def _opposed(one, other):
+def _opposed(one: np.ndarray, other: np.ndarray) -> list[str]:
     """Return the axes, of x, y and z, along which signals (N, k) have opposite signs."""
     return [axis for k, axis in zip(range(one.shape[1]), 'xyz', strict=False)
             if correlation(one[:, k:k + 1], other[:, k:k + 1])[0] < -SURE]
 
 
-def world(record, vehicle):
+def world(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """Find records in NED or FRD: the specific force points up in flight."""
     grid = Grid.of(record)
     if grid is None:
@@ -149,7 +150,7 @@ def world(record, vehicle):
     return _motion(grid, attitude)
 
 
-def _motion(grid, attitude):
+def _motion(grid: Grid, attitude: np.ndarray) -> list[Finding]:
     """Find velocities whose changes contradict attitude and specific force."""
     if not grid.record.has('vx', 'vy', 'vz'):
         return _height(grid.record)
@@ -177,7 +178,7 @@ def _motion(grid, attitude):
                     'NED', 'turn position and velocity into ENU (x east, y north, z up)')]
 
 
-def _height(record):
+def _height(record: FlightRecord) -> list[Finding]:
     if not record.has('pz'):
         return []
     height = float(np.median(record.columns['pz']))
@@ -188,7 +189,7 @@ def _height(record):
                     'turn NED into ENU, or count pz from the ground')]
 
 
-def signs(record, vehicle):
+def signs(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """Find axes along which position and velocity have opposite signs."""
     grid = Grid.of(record)
     if grid is None or not record.has('px', 'py', 'pz', 'vx', 'vy', 'vz'):
@@ -201,7 +202,7 @@ def signs(record, vehicle):
             for axis in _opposed(moved, velocity)]
 
 
-def velocity_in_body(record, vehicle):
+def velocity_in_body(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """Find velocities in body axes: turned by the attitude they are what the position does."""
     grid = Grid.of(record)
     if grid is None or not record.has('px', 'py', 'pz', 'vx', 'vy', 'vz'):
@@ -232,7 +233,7 @@ def velocity_in_body(record, vehicle):
                     'turn the velocity into the world, or say frame: body of it in a mapping')]
 
 
-def _strangers(moved, velocity):
+def _strangers(moved: np.ndarray, velocity: np.ndarray) -> list[Finding]:
     """Find a position and a velocity (N, 3) that do not belong together."""
     alike = correlation(moved, velocity)[0]
     fast = min(np.sqrt(np.mean(np.sum(values ** 2, axis=1))) for values in (moved, velocity))

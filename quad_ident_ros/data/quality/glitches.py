@@ -18,8 +18,9 @@ from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.frames import best_reading, SURE
 from quad_ident_ros.data.quality.once import once
 from quad_ident_ros.data.quality.series import attitudes_of, correlation, Grid
-from quad_ident_ros.data.record import QUATERNION
+from quad_ident_ros.data.record import FlightRecord, QUATERNION
 from quad_ident_ros.model.attitude import conjugate, continuous, product
+from quad_ident_ros.model.vehicle import Vehicle
 
 LONGEST = 0.15            # s, that a jump lasts
 FAR = 7.0                 # standard deviations of the noise from which on it is one,
@@ -38,7 +39,7 @@ STATES = {'position': (('px', 'py', 'pz'), 0.02, 'm'),
           'rate': (('wx', 'wy', 'wz'), 0.2, 'rad/s')}
 
 
-def attitude(record, vehicle):
+def attitude(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """Find jumps of the attitude that are gone within 0.15 s."""
     grid = Grid.of(record)
     if (grid is None or not record.has(*QUATERNION, 'wx', 'wy', 'wz')
@@ -65,7 +66,7 @@ def attitude(record, vehicle):
         'others')]
 
 
-def others(record, vehicle):
+def others(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """
     Find jumps of position, velocity and rate that are gone within a few samples.
 
@@ -91,7 +92,8 @@ def others(record, vehicle):
     return found
 
 
-def spikes(t, values, name, attitudes=None):
+def spikes(t: np.ndarray, values: np.ndarray, name: str, attitudes: np.ndarray | None = None
+           ) -> np.ndarray:
     """
     Return which samples (N,) of a state jump off and back within some 30 ms.
 
@@ -101,13 +103,14 @@ def spikes(t, values, name, attitudes=None):
     return _unturned(t, values, _beside(t, values, STATES[name][1])[1], attitudes)
 
 
-def independent(record):
+def independent(record: FlightRecord) -> bool:
     """Return whether neither attitude nor rate of a record is reckoned from the other one."""
     return ('rate' not in record.info.get(DIFFERENTIATED, ())
             and 'attitude' not in record.info.get(SUMMED, ()))
 
 
-def _unturned(t, rates, off, attitudes):
+def _unturned(t: np.ndarray, rates: np.ndarray, off: np.ndarray, attitudes: np.ndarray | None
+              ) -> np.ndarray:
     """
     Return which of the samples (N,) that are off are so though the attitude does not turn so.
 
@@ -131,7 +134,8 @@ def _unturned(t, rates, off, attitudes):
     return off & kept
 
 
-def _mismatch(t, rates, attitudes, rows):
+def _mismatch(t: np.ndarray, rates: np.ndarray, attitudes: np.ndarray, rows: np.ndarray
+              ) -> np.ndarray:
     """Return by how much more than the rates say attitudes turn after samples (M,), (M, 3) rad."""
     q = attitudes[rows], attitudes[rows + 1]
     turned = product(conjugate(q[0]), q[1])
@@ -140,7 +144,7 @@ def _mismatch(t, rates, attitudes, rows):
             - 0.5 * (rates[rows] + rates[rows + 1]) * (t[rows + 1] - t[rows])[:, None])
 
 
-def _reach(parts, half):
+def _reach(parts: np.ndarray, half: int) -> np.ndarray:
     """Return how far the sums (N, 3) of parts (N - 1, 3) spread around each sample, (N,)."""
     sums = np.vstack([np.zeros((1, 3)), np.cumsum(parts, axis=0)])
     # The noise of the attitude averages out; what the sums move by stays.
@@ -149,7 +153,7 @@ def _reach(parts, half):
                           - minimum_filter1d(sums, 2 * half + 3, axis=0, mode='nearest'), axis=-1)
 
 
-def _beside(t, values, least):
+def _beside(t: np.ndarray, values: np.ndarray, least: float) -> tuple[np.ndarray, np.ndarray]:
     """
     Return how far values (N, 3) are off the running median, (N,), and whether that is far.
 
@@ -170,24 +174,24 @@ def _beside(t, values, least):
                                    max(FAR * float(np.sqrt(np.mean(noise ** 2))), least))
 
 
-def _half(t):
+def _half(t: np.ndarray) -> int:
     """Return how many samples to each side BRIEF is, at times t (N,) s."""
     period = float(np.median(np.diff(t)))
     return round(float(np.clip(BRIEF / max(period, BRIEF / WIDEST), 1, WIDEST)))
 
 
-def _median(values, half):
+def _median(values: np.ndarray, half: int) -> np.ndarray:
     """Return the running median (N, 3) of values over so many samples to each side."""
     return np.stack([median_filter(column, 2 * half + 1, mode='nearest')
                      for column in values.T], axis=1)
 
 
-def jumps(record):
+def jumps(record: FlightRecord) -> np.ndarray:
     """Return in which samples (N,) of a record the attitude is off; nowhere without a gyro."""
     return _of(record)[1]
 
 
-def glitches(t, attitudes, rates):
+def glitches(t: np.ndarray, attitudes: np.ndarray, rates: np.ndarray) -> np.ndarray:
     """
     Return which samples (N,) of the attitude are off those around them.
 
@@ -197,7 +201,7 @@ def glitches(t, attitudes, rates):
 
 
 @once
-def _of(record):
+def _of(record: FlightRecord) -> tuple[np.ndarray, np.ndarray]:
     """Return the answer of _off for a record; zeros without attitude or gyro."""
     attitudes = attitudes_of(record)
     if attitudes is None or not record.has('wx', 'wy', 'wz'):
@@ -205,7 +209,7 @@ def _of(record):
     return _off(record.t, attitudes, record.stack('wx', 'wy', 'wz'))
 
 
-def _off(t, attitudes, rates):
+def _off(t: np.ndarray, attitudes: np.ndarray, rates: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return how far each attitude is off those around it, (N,) rad, and whether that is far."""
     q = continuous(attitudes / np.linalg.norm(attitudes, axis=-1, keepdims=True))
     steps = np.diff(t)

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Whether the rotors carry the vehicle; their number, order and spin, by what commands do."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import permutations, product
 
@@ -10,7 +11,8 @@ import numpy as np
 from quad_ident_ros.data.quality import frames
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.series import Grid
-from quad_ident_ros.model.vehicle import hover_fault
+from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.model.vehicle import hover_fault, Vehicle
 
 SURE, BETTER = 0.5, 0.2   # mean correlation that an explanation needs, and its lead
 SLOW = 1.0                # s; what changes more slowly is trim, aerodynamics and battery
@@ -28,7 +30,7 @@ COMPACT, WIDE = 0.01, 3.0   # moments of inertia over mass arm^2, beyond which n
 MOST_ROTORS = 6           # of which all orders are tried
 
 
-def count(record, vehicle):
+def count(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """Find more or fewer columns cmd1..N than the vehicle has rotors."""
     names = record.numbered('cmd')
     if vehicle is None or not names or len(names) == len(vehicle.rotors):
@@ -39,13 +41,13 @@ def count(record, vehicle):
         f'{len(vehicle.rotors)}', 'name the vehicle that flew, or the columns cmd1, cmd2, ...')]
 
 
-def hover(record, vehicle):
+def hover(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """Find vehicle files whose vehicle could not hover."""
     fault = hover_fault(vehicle) if vehicle is not None else None
     return [Finding('hover', 'error', 'vehicle file', *fault)] if fault else []
 
 
-def size(record, vehicle):
+def size(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """Find vehicle files whose moments of inertia do not go with mass and arms."""
     if vehicle is None or not vehicle.arm_length > 0.0:
         return []
@@ -59,7 +61,7 @@ def size(record, vehicle):
         'give the positions of the rotors in m and the inertia in kg m^2')]
 
 
-def order_and_spin(record, vehicle):
+def order_and_spin(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """
     Find columns cmd1..N that are not in the vehicle file's order, and spins that are not as in it.
 
@@ -67,27 +69,28 @@ def order_and_spin(record, vehicle):
     for each order (roll and pitch), then for each choice of spins (yaw).
     """
     told = _evidence(record, vehicle)
-    return [] if told is None else _wrong(told, vehicle)
+    return [] if told is None or vehicle is None else _wrong(told, vehicle)
 
 
-def confirmed(record, vehicle):
+def confirmed(record: FlightRecord, vehicle: Vehicle | None) -> tuple[str, ...]:
     """
     Return the codes of Findings that a flight speaks against: it shows what the vehicle file says.
 
     A flight that hardly yaws shows the order of the rotors, but not their spins.
     """
     told = _evidence(record, vehicle)
-    if told is None or told.scores[told.declared] < SURE or _wrong(told, vehicle):
+    if (told is None or vehicle is None or told.scores[told.declared] < SURE
+            or _wrong(told, vehicle)):
         return ()
     spins = tuple(rotor.spin for rotor in vehicle.rotors)
     yaws = _spin_scores(told, spins)[spins] >= _sure(told)
     return ('rotor_order', 'other_vehicle', *(('rotor_spin',) if yaws else ()))
 
 
-def _wrong(told, vehicle):
+def _wrong(told: '_Evidence', vehicle: Vehicle) -> list[Finding]:
     """Return the Findings on the order and the spins by what a flight says of them."""
     scores, declared = told.scores, told.declared
-    best = max(scores, key=scores.get)
+    best = max(scores, key=scores.__getitem__)
     if scores[best] < SURE:
         return []
     if scores[best] > scores[declared] + BETTER:
@@ -114,11 +117,11 @@ class _Evidence:
     moment: np.ndarray
     squared: np.ndarray
     lag: int
-    scores: dict
-    declared: tuple
+    scores: dict[tuple[int, ...], float]
+    declared: tuple[int, ...]
 
 
-def _evidence(record, vehicle):
+def _evidence(record: FlightRecord, vehicle: Vehicle | None) -> _Evidence | None:
     """Return the _Evidence of a record, None where it cannot be held against the vehicle file."""
     names = record.numbered('cmd')
     grid = Grid.of(record)
@@ -140,11 +143,12 @@ def _evidence(record, vehicle):
     return _Evidence(grid, moment, squared, lag, scores, tuple(range(len(names))))
 
 
-def _fast(grid, signal, slow=SLOW):
+def _fast(grid: Grid, signal: np.ndarray, slow: float = SLOW) -> np.ndarray:
     return signal - grid.smooth(signal, slow)
 
 
-def _scores(grid, moment, squared, position, lag):
+def _scores(grid: Grid, moment: np.ndarray, squared: np.ndarray, position: np.ndarray, lag: int
+            ) -> tuple[int, dict[tuple[int, ...], float]]:
     """Return lag and order -> mean correlation over roll and pitch."""
     target, drive = _aligned(grid, moment[:, :2], squared, lag)
     # Moments of thrust: y F about x, -x F about y.
@@ -164,11 +168,11 @@ def _scores(grid, moment, squared, position, lag):
     return lag, scores
 
 
-def _spin_scores(told, spins):
+def _spin_scores(told: _Evidence, spins: Sequence[int]) -> dict[tuple[int, ...], float]:
     """Return {spins: correlation of the moment about z with that of the commands}."""
-    target, drive = _aligned(told.grid, *(
-        _fast(told.grid, told.grid.smooth(signal, TURN), TURNS)
-        for signal in (told.moment[:, 2:], told.squared)), told.lag)
+    moment, squared = (_fast(told.grid, told.grid.smooth(signal, TURN), TURNS)
+                       for signal in (told.moment[:, 2:], told.squared))
+    target, drive = _aligned(told.grid, moment, squared, told.lag)
     power = np.sum(target ** 2)
     scores = {}
     for choice in product((1, -1), repeat=len(spins)):
@@ -178,16 +182,16 @@ def _spin_scores(told, spins):
     return scores
 
 
-def _sure(told):
+def _sure(told: _Evidence) -> float:
     """Return the correlation that spins need: in a short flight noise alone has much of one."""
     seconds = np.count_nonzero(told.grid.good) * told.grid.period
     return max(SURE, CHANCE * np.sqrt(TURN / seconds))
 
 
-def _spin(told, vehicle):
+def _spin(told: _Evidence, vehicle: Vehicle) -> list[Finding]:
     spins = tuple(rotor.spin for rotor in vehicle.rotors)
     scores = _spin_scores(told, spins)
-    best = max(scores, key=scores.get)
+    best = max(scores, key=scores.__getitem__)
     if scores[best] < _sure(told) or scores[best] < scores[spins] + BETTER:
         return []
     # Roll and pitch leak into the yaw of real vehicles, which looks like other spins, too.
@@ -203,7 +207,8 @@ def _spin(told, vehicle):
         'or the order of the commands')]
 
 
-def _aligned(grid, moment, squared, lag):
+def _aligned(grid: Grid, moment: np.ndarray, squared: np.ndarray, lag: int
+             ) -> tuple[np.ndarray, np.ndarray]:
     """Return moments and the commands lag samples before, both about their means."""
     index = np.flatnonzero(grid.good)
     index = index[index >= lag]

@@ -7,16 +7,18 @@ import numpy as np
 from quad_ident_ros.data.cutting import without
 from quad_ident_ros.data.quality import units
 from quad_ident_ros.data.quality.finding import Finding
+from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.model.vehicle import Vehicle
 
 NEAR = 0.002   # of the range of speeds
 STUCK = 0.9    # of the samples of one rotor, which then shows nothing but the limit
 
 
-def _grave(share, of_one):
+def _grave(share: float, of_one: float) -> str:
     return 'error' if of_one > STUCK else 'info' if share < 0.01 else 'warning'
 
 
-def speeds(record, vehicle):
+def speeds(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """Find commands at or beyond speed_min and speed_max."""
     names = record.numbered('cmd')
     if vehicle is None or not names or not np.isfinite(vehicle.speed_max):
@@ -28,7 +30,7 @@ def speeds(record, vehicle):
     found = []
     for limit, bad in (('speed_max', table >= vehicle.speed_max - margin),
                        ('speed_min', table <= vehicle.speed_min + margin)):
-        rows = bad.any(axis=1)
+        rows = np.any(bad, axis=1)
         if rows.any():
             share = rows.mean()
             worst = int(np.argmax(bad.sum(axis=0)))

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.ndimage import maximum_filter1d
 from scipy.signal import fftconvolve
 
-from quad_ident_ros.data.record import EULER, QUATERNION
+from quad_ident_ros.data.record import EULER, FlightRecord, QUATERNION
 from quad_ident_ros.data.streams import slerp
 from quad_ident_ros.gravity import GRAVITY
 from quad_ident_ros.model.attitude import (
@@ -27,7 +27,7 @@ NEAR, SHARE_ERROR, ALIKE = 0.25, 0.1, 0.5   # of a share that is 1, its error, a
 COARSEST = 0.1 * WIDTH  # s between them, however long a record is: smoothing needs a few
 
 
-def attitudes_of(record):
+def attitudes_of(record: FlightRecord) -> np.ndarray | None:
     """Return the unit quaternions of a record, (N, 4), or None where one is not a rotation."""
     if record.has(*QUATERNION):
         q = record.stack(*QUATERNION)
@@ -47,13 +47,13 @@ class Grid:
     A view on the record; the functions below give its signals at t.
     """
 
-    record: object
+    record: FlightRecord
     t: np.ndarray
     period: float
     good: np.ndarray
 
     @classmethod
-    def of(cls, record):
+    def of(cls, record: FlightRecord) -> 'Grid | None':
         """
         Return the grid of a record at its median period, or at some of these where it is long.
 
@@ -77,23 +77,23 @@ class Grid:
         good[:edge] = good[-edge:] = False
         return cls(record, t, period, good) if good.sum() >= 50 else None
 
-    def signal(self, *names):
+    def signal(self, *names: str) -> np.ndarray:
         """Return columns at t, (N, k)."""
         return np.stack([np.interp(self.t, self.record.t, self.record.stack(name)[:, 0])
                          for name in names], axis=-1)
 
-    def held(self, *names):
+    def held(self, *names: str) -> np.ndarray:
         """Return columns at t, each held until its next sample, (N, k)."""
         # A hundredth of a sample: rounding must not make it the command before.
         index = np.searchsorted(self.record.t, self.t + 0.01 * self.period, side='right') - 1
         return self.record.stack(*names)[index]
 
-    def attitude(self):
+    def attitude(self) -> np.ndarray | None:
         """Return the attitude at t, (N, 4), or None where there is none."""
         q = attitudes_of(self.record)
         return None if q is None else slerp(self.record.t, continuous(q), self.t)
 
-    def smooth(self, signal, width=WIDTH):
+    def smooth(self, signal: np.ndarray, width: float = WIDTH) -> np.ndarray:
         """Return a signal (N, k) smoothed by a Hann window of a full width in s."""
         half = min(max(1, round(width / 2 / self.period)), len(signal))
         window = np.hanning(2 * half + 3)[1:-1]
@@ -103,11 +103,11 @@ class Grid:
             return fftconvolve(padded, window[:, None], 'valid', axes=0)
         return np.stack([np.convolve(column, window, 'valid') for column in padded.T], axis=-1)
 
-    def derivative(self, signal):
+    def derivative(self, signal: np.ndarray) -> np.ndarray:
         """Return the smoothed derivative of a signal (N, k) by central differences."""
         return self.smooth(np.gradient(signal, self.period, axis=0))
 
-    def rate_of(self, attitude):
+    def rate_of(self, attitude: np.ndarray) -> np.ndarray:
         """Return the smoothed body rate of attitudes (N, 4), (N, 3) rad/s."""
         q = continuous(attitude)
         turn = product(conjugate(q[:-2]), q[2:])
@@ -117,7 +117,7 @@ class Grid:
         rate = scale * turn[:, 1:] / (2 * self.period)
         return self.smooth(np.vstack([rate[:1], rate, rate[-1:]]))
 
-    def force(self):
+    def force(self) -> np.ndarray:
         """
         Return the specific force in the body, (N, 3) m/s^2, smoothed.
 
@@ -127,12 +127,12 @@ class Grid:
             return self.smooth(self.signal('ax', 'ay', 'az'))
         return np.tile([0.0, 0.0, GRAVITY], (len(self.t), 1))
 
-    def acceleration(self, attitude):
+    def acceleration(self, attitude: np.ndarray) -> np.ndarray:
         """Return the acceleration in the world from attitude and specific force, (N, 3)."""
         return rotate(attitude, self.force()) - np.array([0.0, 0.0, GRAVITY])
 
 
-def is_rather(target, signal, other, together):
+def is_rather(target: np.ndarray, signal: np.ndarray, other: np.ndarray, together: float) -> bool:
     """
     Return whether a target is another reading of a signal and not the signal, all (N, k).
 
@@ -150,13 +150,13 @@ def is_rather(target, signal, other, together):
     return bool(abs(share - 1.0) < NEAR and error < SHARE_ERROR and alike > ALIKE)
 
 
-def explained(target, model):
+def explained(target: np.ndarray, model: np.ndarray) -> float:
     """Return the share of a signal's power that another explains; 1 where they are equal."""
     power = np.sum(target ** 2)
     return 1.0 - np.sum((target - model) ** 2) / power if power > 0 else 0.0
 
 
-def correlation(one, other):
+def correlation(one: np.ndarray, other: np.ndarray) -> tuple[float, float]:
     """Return the correlation over all axes about zero, and the slope of one on the other."""
     product, square = np.sum(one * other), np.sum(other ** 2)
     scale = np.sqrt(np.sum(one ** 2) * square)

@@ -6,6 +6,8 @@ import numpy as np
 
 from quad_ident_ros.data.cutting import without
 from quad_ident_ros.data.quality.finding import Finding
+from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.model.vehicle import Vehicle
 
 JUMP = 0.2       # of the usual step: from rest a stream sets out slower
 ROUNDING = 1e-9  # m, rad/s, m/s^2: a step that is no motion
@@ -13,7 +15,7 @@ STREAMS = {'position': ('px', 'py', 'pz'), 'attitude': ('qw', 'qx', 'qy', 'qz'),
            'rate': ('wx', 'wy', 'wz'), 'specific force': ('ax', 'ay', 'az')}
 
 
-def held(record, vehicle):
+def held(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """Find samples of a stream that repeat the last one and then jump."""
     found = []
     for name, columns in STREAMS.items():
@@ -32,7 +34,7 @@ def held(record, vehicle):
     return found
 
 
-def _held(step):
+def _held(step: np.ndarray) -> tuple[float, int, int, int, np.ndarray]:
     """
     Return share, number of runs, longest run and begin of the repeats that end in a jump.
 
@@ -58,7 +60,7 @@ def _held(step):
             repeats)
 
 
-def marked(record, vehicle):
+def marked(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """Pass on what a column `stale` says."""
     if not record.has('stale'):
         return []

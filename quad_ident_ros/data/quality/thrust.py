@@ -10,7 +10,9 @@ from quad_ident_ros.data.cutting import without
 from quad_ident_ros.data.quality import rotors, units
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.series import Grid
+from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.data.thrust_level import BY_LOG, FULL_SPEED, mass_to_carry
+from quad_ident_ros.model.vehicle import Vehicle
 
 APART = 10.0      # times too much or too little: no vehicle file is that wrong,
 OTHER = 2.0       # times by which no scale, thrust stand or battery is off: it is another vehicle
@@ -19,7 +21,7 @@ MOVING = 0.2      # m/s: what stands on the ground needs no thrust
 FLYING = 0.5      # of the weight, from which on a thrust is needed
 
 
-def level(record, vehicle):
+def level(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """Find commands whose scale is that by which thrust carries the weight."""
     if FULL_SPEED not in record.info:
         return []
@@ -37,10 +39,10 @@ def level(record, vehicle):
         'proportion to the mass', remedy)]
 
 
-def carried(record, vehicle):
+def carried(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """Find flights that the commands do not explain: they give far less thrust, or far more."""
     thrust = _Thrust.of(record, vehicle)
-    if thrust is None:
+    if thrust is None or vehicle is None:
         return []
     names, grid, found = record.numbered('cmd'), thrust.grid, []
     for bad, what in ((thrust.given * APART < thrust.needed, 'less than a tenth of'),
@@ -56,10 +58,11 @@ def carried(record, vehicle):
     return found
 
 
-def other_vehicle(record, vehicle):
+def other_vehicle(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """Find vehicle files of another vehicle: its thrust is off by a factor, its rotors may be."""
     thrust = _Thrust.of(record, vehicle)
-    if thrust is None or thrust.flying.sum() * thrust.grid.period < LONGEST:
+    if (thrust is None or vehicle is None
+            or thrust.flying.sum() * thrust.grid.period < LONGEST):
         return []
     ratio = float(np.median(thrust.given[thrust.flying] / thrust.needed[thrust.flying]))
     if 1.0 / OTHER < ratio < OTHER or not 1.0 / APART < ratio < APART:
@@ -83,7 +86,7 @@ class _Thrust:
     flying: np.ndarray
 
     @classmethod
-    def of(cls, record, vehicle):
+    def of(cls, record: FlightRecord, vehicle: Vehicle | None) -> '_Thrust | None':
         """Return that of a record with commands and velocity, None where units are off."""
         names, grid = record.numbered('cmd'), Grid.of(record)
         if (vehicle is None or grid is None or not names or not record.has('vx', 'vy', 'vz')

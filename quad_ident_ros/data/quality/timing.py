@@ -7,7 +7,8 @@ import numpy as np
 from quad_ident_ros.data.counted import counted
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.series import GAP
-from quad_ident_ros.data.record import CUT, NOTED
+from quad_ident_ros.data.record import CUT, FlightRecord, NOTED
+from quad_ident_ros.model.vehicle import Vehicle
 
 COARSE = 0.025    # s between samples from which on commands change unseen between them
 SILENT = 0.9      # share of the time outside of bursts,
@@ -16,7 +17,7 @@ OFTEN = 10        # so many of them: of fewer each is a gap
 SLOWEST = 0.15    # s between samples: of a rollout of 0.5 s hardly more than its end is then seen
 
 
-def slow(record, vehicle):
+def slow(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """Find records that are sampled too slowly to be held against rollouts."""
     period = record.period()
     if period <= COARSE:
@@ -34,7 +35,7 @@ def slow(record, vehicle):
         'where it is in ns; if it is right, record faster')]
 
 
-def bursts(record, vehicle):
+def bursts(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """Find samples that are stamped on arrival, many at once."""
     if not _in_bursts(record):
         return []
@@ -49,7 +50,7 @@ def bursts(record, vehicle):
         'the time before it')]
 
 
-def _in_bursts(record):
+def _in_bursts(record: FlightRecord) -> bool:
     """Whether nearly all of the time passes in a few of the steps, again and again."""
     steps = np.diff(record.t)
     wide = steps > GAP * np.median(steps)
@@ -57,7 +58,7 @@ def _in_bursts(record):
                 and steps[wide].sum() > SILENT * steps.sum())
 
 
-def gaps(record, vehicle):
+def gaps(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """Find steps in time of over three median periods."""
     if _in_bursts(record):
         return []
@@ -78,7 +79,7 @@ def gaps(record, vehicle):
         'predictions stop at gaps; record with a lossless transport')]
 
 
-def duplicates(record, vehicle):
+def duplicates(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """Find samples that repeat the one before in every column."""
     table = np.stack(list(record.columns.values()), axis=-1) if record.columns else None
     if table is None:
@@ -96,13 +97,13 @@ def duplicates(record, vehicle):
                     'keep one sample of each; a recorder that polls writes them')]
 
 
-def _at_rest(same):
+def _at_rest(same: np.ndarray) -> bool:
     """Whether all repeats lie at the beginning or the end."""
     changes = np.flatnonzero(~same)
     return not same[changes[0]:changes[-1]].any()
 
 
-def truncated(record, vehicle):
+def truncated(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """Find files whose last line was left out."""
     if not record.info.get('truncated'):
         return []
@@ -110,7 +111,7 @@ def truncated(record, vehicle):
                     'if the line is whole, end it with a line end')]
 
 
-def reader_notes(record, vehicle):
+def reader_notes(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """Pass on what the reader took for what, and what it left out."""
     codes = {note: code for code in NOTED for note in record.info.get(code, ())}
     # What a note on anything but commands asks for, if anything, it says itself.

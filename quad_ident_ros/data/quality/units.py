@@ -6,9 +6,10 @@ import numpy as np
 
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.series import correlation, Grid
-from quad_ident_ros.data.record import EULER, QUATERNION
+from quad_ident_ros.data.record import EULER, FlightRecord, QUATERNION
 from quad_ident_ros.gravity import GRAVITY
 from quad_ident_ros.model.attitude import body_rate, quaternion_from_euler, rotate
+from quad_ident_ros.model.vehicle import Vehicle
 
 DEGREE = np.pi / 180
 RPM = 2 * np.pi / 60
@@ -19,11 +20,11 @@ OFF = 2.0       # no gyro and no estimate is off by that factor
 MOVED = 1e-3    # rad/s or m/s rms: less is rounding
 
 
-def _is(slope, unit):
+def _is(slope: float, unit: float) -> bool:
     return unit / NEAR < slope < unit * NEAR
 
 
-def _rates(record):
+def _rates(record: FlightRecord) -> tuple[np.ndarray, np.ndarray] | None:
     """Return the body rate of the attitude and the measured one, or None."""
     grid = Grid.of(record)
     if grid is None or not record.has('wx', 'wy', 'wz'):
@@ -35,7 +36,7 @@ def _rates(record):
     return grid.rate_of(attitude)[grid.good], rate[grid.good]
 
 
-def rates_in_degrees(record, vehicle):
+def rates_in_degrees(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """Find a gyro in deg/s: its rates are 57.3 times those of the attitude."""
     rates = _rates(record) if record.has(*QUATERNION) else None
     if rates is None:
@@ -48,7 +49,8 @@ def rates_in_degrees(record, vehicle):
     return [_gyro_in_degrees(f'the rates are {abs(slope):.1f} times those of the attitude')]
 
 
-def _other_size(one, other, where, these, those):
+def _other_size(one: np.ndarray, other: np.ndarray, where: str, these: str, those: str
+                ) -> list[Finding]:
     """Find signals (N, 3) that go with others, by a factor that is of no unit."""
     sure, slope = correlation(one, other)
     moved = min(np.sqrt(np.mean(values ** 2)) for values in (one, other))
@@ -59,7 +61,7 @@ def _other_size(one, other, where, these, those):
                     'check their scale where they are written')]
 
 
-def euler_in_degrees(record, vehicle):
+def euler_in_degrees(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """
     Find phi, theta, psi in degrees, and a gyro in deg/s beside them.
 
@@ -73,8 +75,8 @@ def euler_in_degrees(record, vehicle):
     reference = None
     if record.has('wx', 'wy', 'wz'):
         reference = grid.smooth(grid.signal('wx', 'wy', 'wz'))
-    elif not alone and grid.attitude() is not None:
-        reference = grid.rate_of(grid.attitude())
+    elif not alone and (attitude := grid.attitude()) is not None:
+        reference = grid.rate_of(attitude)
     if reference is not None:
         rate = body_rate(euler * DEGREE, grid.derivative(euler))
         sure, slope = correlation(rate[grid.good], reference[grid.good])
@@ -83,27 +85,27 @@ def euler_in_degrees(record, vehicle):
         if abs(sure) >= SURE and alone and _is(abs(slope), DEGREE):
             return [_gyro_in_degrees(f'the rates are {1 / abs(slope):.1f} times those of the '
                                      'angles')]
-    slope = _tilted_by_degrees(grid, euler) if alone else None
-    if slope is None:
+    tilted = _tilted_by_degrees(grid, euler) if alone else None
+    if tilted is None:
         return []
-    found = [_in_degrees(f'the vehicle accelerates {slope:.2f} times what the angles give, read '
+    found = [_in_degrees(f'the vehicle accelerates {tilted:.2f} times what the angles give, read '
                          'as degrees')]
     return found + ([_gyro_in_degrees('they are those of angles in degrees')]
                     if reference is not None and abs(sure) >= SURE else [])
 
 
-def _in_degrees(why):
+def _in_degrees(why: str) -> Finding:
     return Finding('euler_in_degrees', 'error', 'phi, theta, psi',
                    f'{why}: they are in degrees',
                    'multiply phi, theta and psi by pi/180, or say unit: deg in a mapping')
 
 
-def _gyro_in_degrees(why):
+def _gyro_in_degrees(why: str) -> Finding:
     return Finding('rate_in_degrees', 'error', 'wx, wy, wz', f'{why}: they are in deg/s',
                    'multiply wx, wy and wz by pi/180, or say unit: deg/s in a mapping')
 
 
-def _tilted_by_degrees(grid, euler):
+def _tilted_by_degrees(grid: Grid, euler: np.ndarray) -> float | None:
     """
     Return the slope of the horizontal acceleration on that of tilts in degrees, if it is about 1.
 
@@ -121,7 +123,7 @@ def _tilted_by_degrees(grid, euler):
     return slope if sure >= SURE and _is(slope, 1.0) else None
 
 
-def force_in_g(record, vehicle):
+def force_in_g(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """Find an accelerometer in g: the mean of its magnitude is 1."""
     if not record.has('ax', 'ay', 'az'):
         return []
@@ -134,7 +136,7 @@ def force_in_g(record, vehicle):
                     f'multiply ax, ay and az by {GRAVITY}, or say unit: g in a mapping')]
 
 
-def position_in_millimetres(record, vehicle):
+def position_in_millimetres(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """Find positions, or positions and velocities, in mm."""
     grid = Grid.of(record)
     if grid is None or not record.has('vx', 'vy', 'vz'):
@@ -164,7 +166,7 @@ def position_in_millimetres(record, vehicle):
                     'in mm', f'divide {names} by 1000, or say unit: mm or mm/s in a mapping')]
 
 
-def speeds_in_rpm(record, vehicle):
+def speeds_in_rpm(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """Find commands or rotor speeds in rpm: they are 9.55 times those that carry the vehicle."""
     if vehicle is None:
         return []

@@ -2,15 +2,20 @@
 # SPDX-License-Identifier: Apache-2.0
 """DataFlash logs of ArduPilot (.BIN)."""
 
+from pathlib import Path
+
 from quad_ident_ros.data.ardupilot import contents, read_ardupilot
 from quad_ident_ros.data.dataflash import MAGIC
+from quad_ident_ros.data.mapping import Mapping
 from quad_ident_ros.data.readers.base import Reader
+from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.vehicle import Vehicle
 
 TEXT = b'FMT, 128, 89, FMT'     # how the same log begins where it was written out as text
 
 
-def recognises(path, start):
+def recognises(path: Path, start: bytes) -> bool:
     """Return whether a path is such a log; InputError where it is one that was made text."""
     if start.startswith(TEXT):
         raise InputError(f'{path}: this is an ArduPilot log that was written out as text; give '
@@ -18,7 +23,8 @@ def recognises(path, start):
     return start.startswith(MAGIC)
 
 
-def read(path, mapping=None, vehicle=None):
+def read(path: Path, mapping: Mapping | None = None, vehicle: Vehicle | None = None
+         ) -> list[FlightRecord]:
     """Return the flight record of a log."""
     return [read_ardupilot(path, mapping)]
 

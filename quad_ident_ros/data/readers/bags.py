@@ -6,10 +6,10 @@ from pathlib import Path
 
 from quad_ident_ros.data.bag_file import BagFile
 from quad_ident_ros.data.message_roles import could_be
-from quad_ident_ros.data.readers.base import content_of
+from quad_ident_ros.data.readers.base import Content, content_of
 
 
-def topics_of(path):
+def topics_of(path: str | Path) -> list[Content]:
     """
     Return the Content of each topic of a bag, by the stamps of receipt.
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from quad_ident_ros.data.mapping import Mapping
 from quad_ident_ros.data.record import FlightRecord
@@ -60,7 +61,7 @@ class Reader:
     spoilt: Callable[[Path, Mapping | None, Vehicle | None], list[FlightRecord]] | None = None
 
 
-def content_of(name: str, kind: str, stamps_ns: np.ndarray, origin_ns: int,
+def content_of(name: str, kind: str, stamps_ns: ArrayLike, origin_ns: int,
                fields: Sequence[str] = (), roles: Sequence[str] = ()) -> Content:
     """Return the Content of a stream by its stamps (N,) ns, from the start of the file's clock."""
     stamps = np.asarray(stamps_ns, np.int64)

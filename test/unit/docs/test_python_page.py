@@ -47,5 +47,7 @@ def test_the_notebook_runs_and_says_what_is_saved_in_it():
     saved = json.loads(NOTEBOOK.read_text(encoding='utf-8'))
     assert texts(run(saved)) == texts(saved)
     said = page_of(saved)
-    assert 'drag of the rotors (rotor_drag)' in said and 'error in mass (mass_offset)' in said
+    outputs = '\n'.join(re.findall(r'^```text\n(.*?)^```', said, re.M | re.S))
+    for name, title in ('rotor_drag', 'drag of the rotors'), ('mass_offset', 'error in mass'):
+        assert outputs.count(name) == outputs.count(f'{title} ({name})') == 3
     assert said.count('data:image/png') == 2
