@@ -29,7 +29,6 @@ def time(draft: Draft) -> None:
     if not rising:
         draft.guess.doubts.append(
             f't: no column of a time that rises{_but(found)}; add one in s to the file')
-        draft.guess.candidates['t'] = found
         return
     name = min(rising, key=lambda name: len(draft.names[name]))
     values, unit = draft.table.columns[name], draft.units[name]
@@ -55,7 +54,6 @@ def _by_count(draft: Draft) -> bool:
         draft.guess.doubts.append(
             f't: {counts[0]!r} counts at a rate that the table does not say; write it, such as '
             f't: {{column: {counts[0]}, unit: 100 Hz}}')
-        draft.guess.candidates['t'] = counts
         return True
     draft.columns['t'] = Column((counts[0],), f'{rate:.10g} Hz')
     draft.t = draft.table.columns[counts[0]] / rate

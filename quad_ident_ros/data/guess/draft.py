@@ -33,7 +33,6 @@ class Guess:
     said: list[str] = field(default_factory=list)
     doubts: list[str] = field(default_factory=list)
     roles: list[str] = field(default_factory=list)
-    candidates: dict[str | tuple[str, ...], list] = field(default_factory=dict)
     motors: dict = field(default_factory=dict)
 
 
@@ -123,8 +122,6 @@ class Draft:
         whole = sorted((axes for axes in self._by_prefix(group, entries).values()
                         if len(axes) == len(entries)),
                        key=lambda axes: sum(len(self.names[name]) for name in axes.values()))
-        self.guess.candidates.setdefault(group, []).extend(
-            [axes[axis] for axis in entries] for axes in whole)
         if whole:
             names = [[axes[axis] for axis in entries] for axes in whole]
             if len(names) > 1 and not self._same(group, names[0], names[1]):
