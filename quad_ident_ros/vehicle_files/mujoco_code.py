@@ -149,18 +149,23 @@ def lagging(model, data, controls):
 COMMANDS = '''
 
 class Commands:
-    """Commands that act {delay} s after they are given, to the nearest step; one for an mjData."""
+    """Commands that act {delay} s after they are given; one for an mjData."""
 
     def __init__(self):
         self.waiting, self.given = [], None
 
     def command(self, model, data, controls):
-        """Give controls (n,), and let those act whose time has come; call it before mj_step."""
+        """Give controls (n,), and write the mean of those of a step; call it before mj_step."""
+        if self.given is None:
+            self.given = data.ctrl[ACTUATORS].copy()
         self.waiting.append((data.time + {delay}, np.array(controls)))
-        while self.waiting and self.waiting[0][0] <= data.time + 0.5 * model.opt.timestep:
-            self.given = self.waiting.pop(0)[1]
-        if self.given is not None:
-            data.ctrl[ACTUATORS] = {given}
+        begin, end, mean = data.time, data.time + model.opt.timestep, 0.0
+        while self.waiting and self.waiting[0][0] < end:
+            then = max(self.waiting[0][0], begin)
+            mean = mean + (then - begin) * self.given
+            begin, self.given = then, self.waiting.pop(0)[1]
+        mean = (mean + (end - begin) * self.given) / model.opt.timestep
+        data.ctrl[ACTUATORS] = {given}
 '''
 
 
@@ -217,7 +222,7 @@ def code(vehicle: Vehicle, wanted: Wanted, rotors: Rotors, model: str, lag: str)
         text += LAG.format(rise=_one(wanted.rise), fall=_one(wanted.fall))
     if delay or lag:
         text += COMMANDS.format(
-            delay=_one(delay), given='lagging(model, data, self.given)' if lag else 'self.given')
+            delay=_one(delay), given='lagging(model, data, mean)' if lag else 'mean')
     return Code(text, tuple(forms), constants)
 
 

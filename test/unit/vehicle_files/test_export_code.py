@@ -199,15 +199,16 @@ def test_the_command_writes_it_beside_the_model(tmp_path, capsys):
     assert '\n' not in said and not (tmp_path / 'mine.xml').exists()
 
 
-@pytest.mark.parametrize(('delay', 'steps_late'), [(0.0041, 2), (0.0049, 2), (0.0051, 3)])
-def test_a_delay_ends_at_the_nearest_step(delay, steps_late):
+@pytest.mark.parametrize('delay', [0.0005, 0.004, 0.0041, 0.0059])
+def test_a_delay_that_ends_within_a_step_acts_for_the_rest_of_it(delay):
     mujoco, model, space, _ = model_of(replace(
         VEHICLE, effects={'actuation_delay': {'delay': delay}}))
-    model.opt.timestep = 0.002
+    model.opt.timestep = step = 0.002
     data, line = mujoco.MjData(model), space['Commands']()
     seen = []
     for _ in range(5):
         line.command(model, data, np.full(4, 1.0))
         seen.append(data.ctrl[0])
         mujoco.mj_step(model, data)
-    assert seen == [0.0] * steps_late + [1.0] * (5 - steps_late)
+    ends = step * np.arange(1, 6)
+    np.testing.assert_allclose(seen, np.clip((ends - delay) / step, 0.0, 1.0), atol=1e-9)
