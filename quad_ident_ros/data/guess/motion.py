@@ -9,7 +9,7 @@ import numpy as np
 
 from quad_ident_ros.data.columns import FORCE, POSITION, RATE, VELOCITY
 from quad_ident_ros.data.guess.draft import Draft, together
-from quad_ident_ros.data.guess.names import TURNING
+from quad_ident_ros.data.guess.names import TURNING, WORLD
 from quad_ident_ros.data.guess.series import ratio_of, unit_length
 from quad_ident_ros.data.mapping import factor_of
 from quad_ident_ros.gravity import GRAVITY
@@ -83,8 +83,10 @@ def axes(draft: Draft) -> None:
             down, why = True, 'the height'
         elif low > -BELOW * abs(high):
             down, why = False, 'the height'
+    named = {WORLD.get(tuple(draft.names[name] for name in draft.found[group] or ())): group
+             for group in (POSITION, VELOCITY)}
     text = ' '.join(draft.names.values())
-    if down is None and re.search(r'(^|_| )(ned|frd)(_| |$)', text):
+    if down is None and ('NED' in named or re.search(r'(^|_| )(ned|frd)(_| |$)', text)):
         down, why = True, 'the names'
     if down:
         draft.body = 'FRD'
@@ -92,6 +94,9 @@ def axes(draft: Draft) -> None:
         draft.world = 'NED' if level else 'ENU'
     elif down is not None and draft.attitude is not None and _up(draft.attitude) < 0:
         draft.guess.doubts.append('world, body: by the attitude the vehicle flies upside down')
+    for world in {'NED', 'ENU'} & named.keys() - {draft.world}:
+        draft.guess.doubts.append(f'world: {together(draft.found[named[world]])} are {world} by '
+                                  f'their names, the others {draft.world} by {why}')
     said = f'by {why}' if why else 'assumed, as nothing shows it'
     draft.guess.said.append(f'frames {draft.world} and {draft.body}, {said}')
 
