@@ -110,7 +110,8 @@ def velocities(draft: Draft) -> None:
     unit = draft.unit_of(names, ('m/s', 'mm/s', 'cm/s'))
     if not unit:
         fast = float(np.nanquantile(np.abs(values), 0.9))
-        unit = 'mm/s' if fast > QUICK else 'm/s'
+        place = draft.columns['px'].unit if 'px' in draft.columns else ''
+        unit = 'm/s' if fast <= QUICK else 'cm/s' if place == 'cm' else 'mm/s'
     frame, said = 'world', 'as no stream contradicts it'
     if any('body' in draft.names[name] for name in names):
         frame, said = 'body', 'by its name'
@@ -127,7 +128,10 @@ def _by_velocity(draft: Draft, names: Sequence[str]) -> str:
     given = draft.found[VELOCITY]
     if given is None:
         return ''
-    said = draft.unit_of(given, ('m/s', 'mm/s', 'cm/s')) or 'm/s'
+    said = draft.unit_of(given, ('m/s', 'mm/s', 'cm/s'))
+    if not said and np.nanquantile(np.abs(draft.values(given)), 0.9) > QUICK:
+        return ''       # it is in mm or cm, and so is the position
+    said = said or 'm/s'
     place, speed = draft.values(names), draft.values(given) * factor_of('vx', said)
     width = max(1, round(SPAN / max(float(np.nanmedian(draft.dt())), 1e-6)))
     if len(place) < 4 * width:

@@ -198,6 +198,15 @@ def test_points_of_the_compass_are_axes(tmp_path):
     refused(table(tmp_path, other), 'N, E, D', 'NED', 'ENU', '--write-mapping')
 
 
+@pytest.mark.parametrize('size', [100.0, 1000.0])
+def test_a_unit_that_position_and_velocity_share_is_told_by_the_tilt(tmp_path, size):
+    """Centimetres or millimetres without a word."""
+    found = {'t': T, **named(('x', 'y', 'z'), size * FLIGHT.stack(*PLACE)),
+             **named(('vx', 'vy', 'vz'), size * FLIGHT.stack(*SPEED)),
+             **named(Q, FLIGHT.stack(*Q))}
+    same(load(table(tmp_path, found)), PLACE, SPEED, Q)
+
+
 def test_headings_without_cells_tell_names_apart(tmp_path):
     """As bags of ROS 1 are written out."""
     head = 'rosbagTimestamp,header,seq,pose,position,x,y,z,orientation,x,y,z,w'
