@@ -12,6 +12,7 @@ from quad_ident_ros.data.stamps_in_two import with_whole_stamps
 from quad_ident_ros.data.tabular import left_out, MOST_COLUMNS, noted, numbers_in, Table
 from quad_ident_ros.errors import InputError
 
+_INDEX = '__index_level_0__'     # the name that pandas gives an index without one
 MOST_ENTRIES = 16   # of a list in a cell: a pose with its attitude has 7, a matrix 16
 
 
@@ -34,6 +35,8 @@ def read_parquet(path: Path) -> Table:
         columns: dict[str, np.ndarray] = {}
         text = []
         for name, column in zip(found.column_names, found.columns, strict=True):
+            if name == _INDEX and 'time' not in found.column_names and _is_time(pyarrow, column):
+                name = 'time'
             if not name.isprintable() or not name.strip() or name.strip() in columns:
                 continue
             values = _numbers(pyarrow, column)
@@ -61,6 +64,11 @@ def read_parquet(path: Path) -> Table:
     return Table(columns, {}, (*told, *noted(text)), 'Parquet', text=tuple(text))
 
 
+def _is_time(pyarrow: Any, column: Any) -> bool:
+    kind = column.type
+    return bool(pyarrow.types.is_timestamp(kind) or pyarrow.types.is_duration(kind))
+
+
 def _is_text(pyarrow: Any, kind: Any) -> bool:
     return bool(pyarrow.types.is_string(kind) or pyarrow.types.is_large_string(kind))
 
@@ -85,7 +93,7 @@ def _entries(pyarrow: Any, column: Any) -> np.ndarray | None:
 def _numbers(pyarrow: Any, column: Any) -> np.ndarray | None:
     """Return the values of a column as float, or None where they are no numbers."""
     kind = column.type
-    if pyarrow.types.is_timestamp(kind) or pyarrow.types.is_duration(kind):
+    if _is_time(pyarrow, column):
         column, factor = column.cast(pyarrow.int64()), {
             's': 1e9, 'ms': 1e6, 'us': 1e3, 'ns': 1.0}[kind.unit]
     elif (pyarrow.types.is_integer(kind) or pyarrow.types.is_floating(kind)

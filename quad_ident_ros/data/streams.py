@@ -47,7 +47,7 @@ def join(where: str | Path, streams: Sequence[Stream]
     Raises InputError where the streams share no time.
     """
     notes: list[str] = []
-    clean = [_in_order(where, stream, notes) for stream in streams]
+    clean = [_in_order(where, stream, notes) for stream in streams if _measured(stream, notes)]
     base = next((s for s in clean if s.between == HELD), clean[0])
     stamps = base.stamps
     known = np.ones(len(stamps), bool)
@@ -68,6 +68,20 @@ def join(where: str | Path, streams: Sequence[Stream]
     for stream in clean:
         columns.update(at_stamps(stream, stamps, base.stamps[0]))
     return int(stamps[0]), (stamps - stamps[0]) * 1e-9, columns, tuple(notes)
+
+
+def _measured(stream: Stream, notes: list[str]) -> bool:
+    """Return whether a stream was measured, and note it where it was not: a battery at 0 V."""
+    if stream.between != SLOW:
+        return True
+    voltage = np.concatenate(list(stream.columns.values()))
+    with np.errstate(invalid='ignore'):     # nan of a kind that signals
+        usual = np.median(voltage[np.isfinite(voltage)]) if np.isfinite(voltage).any() else 0.0
+    if usual > 0.0:
+        return True
+    notes.append(f'{stream.source}: the voltage is not above zero, as without a sensor, and is '
+                 'left out')
+    return False
 
 
 def _in_order(where: str | Path, stream: Stream, notes: list[str]) -> Stream:

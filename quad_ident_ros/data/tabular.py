@@ -26,8 +26,12 @@ MOTIVE = ('world: Motive has y up unless its settings say otherwise: export with
 _HEAD = 20      # lines in which the first numbers come
 MOST_COLUMNS = 4096    # wide logs have hundreds; each costs the guess a look
 _FEW = 0.1      # of the cells of a column: with more text it is one of text
-_DATE = re.compile(r'[12]\d{3}-\d\d-\d\d[T ]\d\d:\d\d:\d\d([.,]\d+)?(Z|[+-]00:?00)?$')
-"""A time of day in UTC, or without a zone, as ISO 8601 writes it: decimals after , or ."""
+_DATE = re.compile(r'([12]\d{3}-\d\d-\d\d[T ]\d\d:\d\d:\d\d(?:[.,]\d+)?)'
+                   r'(?:Z|([+-]\d\d):?(\d\d))?$')
+"""A date and time of day, in a zone or without, as ISO 8601 writes it: decimals after , or ."""
+
+_PASSED = re.compile(r'(?:(\d{1,5}) days? )?(\d{1,2}):(\d\d):(\d\d(?:[.,]\d+)?)$')
+"""A time of day, or one since a start, which pandas writes with days."""
 
 _MISSING = frozenset(('none', 'null', 'n/a', 'na', '-', '--'))
 
@@ -112,6 +116,7 @@ def _layout(path: Path, rows: list[str], places: list[int], separator: str) -> _
     head, first = _head(path, rows, separator, comma)
     names, units = _names(path, rows, places[head], head, first, separator)
     names = _under_headings(names, rows[first:first + _HEAD], separator)
+    names = _with_index(names, rows[first:first + _HEAD], separator, comma)
     _refuse_doubled(path, places[head], names)
     return _Layout(separator, comma, names, units, places[first],
                    (MOTIVE,) if rows[0].startswith('Format Version') else (),
@@ -187,8 +192,12 @@ def _is_numbers(row: str, separator: str, comma: bool) -> bool:
     cells = _cells(row, separator)
     values = [_number(cell, comma) for cell in cells]
     numbers = sum(value is not None and not np.isnan(value) for value in values)
-    dates = sum(bool(_DATE.match(cell)) for cell in cells)
-    return len(cells) > 1 and numbers + dates >= max(2, 0.5 * sum(map(bool, cells)))
+    times = sum(map(_is_time, cells))
+    return len(cells) > 1 and numbers + times >= max(2, 0.5 * sum(map(bool, cells)))
+
+
+def _is_time(cell: str) -> bool:
+    return bool(_DATE.match(cell) or _PASSED.match(cell))
 
 
 _UNITS = frozenset('s sec ms us ns m mm cm m/s mm/s cm/s rad deg rad/s deg/s dps rpm krpm g mg '
@@ -207,12 +216,11 @@ def _names(path: Path, rows: list[str], line: int, head: int, first: int,
     names = _cells(rows[head].lstrip('#% '), separator)
     if len(names) > MOST_COLUMNS:
         raise InputError(f'{path}, line {line}: {len(names)} columns are not a flight')
-    doubled = [name for name, count in Counter(names).items() if count > 1 and name]
-    if doubled and head > 0:
+    if _doubled(names) and head > 0:
         above = _cells(rows[head - 1], separator)
         if len(above) == len(names):
             names = [f'{one} {name}'.strip() for one, name in zip(above, names, strict=True)]
-            doubled = [name for name, count in Counter(names).items() if count > 1 and name]
+            names = _below(names, [_cells(row, separator) for row in rows[:head - 1]])
     bad = [name for name in names if not name.isprintable()]
     if bad:
         raise InputError(f'{path}, line {line}, column {bad[0][:40]!r}: this is not a column '
@@ -245,20 +253,67 @@ def _under_headings(names: list[str], rows: list[str], separator: str) -> list[s
     return found
 
 
+def _with_index(names: list[str], rows: list[str], separator: str, comma: bool) -> list[str]:
+    """
+    Return names, with one for a first column of times that has none, as an index of pandas.
+
+    Whole numbers without a name count the rows, of which some may be left out.
+    """
+    if names[0] or {'time', 'index'} & set(names):
+        return names
+    cells = [next(iter(_cells(row, separator)), '') for row in rows]
+    if all(map(_is_time, cells)):
+        return ['time', *names[1:]]
+    values = [_number(cell, comma) for cell in cells]
+    numbers = [value for value in values if value is not None]
+    times = len(numbers) == len(values) and any(value % 1 for value in numbers)
+    return ['index', *names[1:]] if times else names
+
+
+def _doubled(names: list[str]) -> list[str]:
+    return [name for name, count in Counter(names).items() if count > 1 and name]
+
+
+def _below(names: list[str], lines: list[list[str]]) -> list[str]:
+    """Return names, those that repeat with what stands above them in a line that differs."""
+    again = set(_doubled(names))
+    for line in lines if again else ():
+        if len(line) == len(names):
+            told = [f'{one} {name}'.strip() if name in again else name
+                    for one, name in zip(line, names, strict=True)]
+            if not _doubled(told):
+                return told
+    return names
+
+
 def _refuse_doubled(path: Path, line: int, names: list[str]) -> None:
     """Raise InputError where the header names a column twice."""
-    doubled = [name for name, count in Counter(names).items() if count > 1 and name]
+    doubled = _doubled(names)
     if doubled:
         raise InputError(f'{path}, line {line}, column {doubled[0][:40]!r}: the header names '
                          'it twice; rename or remove one')
 
 
 def _seconds(cells: Sequence[str]) -> np.ndarray:
-    """Return the seconds since 1970 (N,) of times of day, nan for an empty cell."""
-    plain = [re.sub(r'(Z|[+-]00:?00)$', '', cell).replace(',', '.') or 'NaT' for cell in cells]
-    stamps = np.array(plain, 'datetime64[ns]')
-    seconds = stamps.astype(np.int64) * 1e-9
+    """Return the seconds since 1970 (N,) of times of day with dates, nan for an empty cell."""
+    told = [_DATE.match(cell) for cell in cells]
+    stamps = np.array([one[1].replace(',', '.') if one else 'NaT' for one in told],
+                      'datetime64[ns]')
+    ahead = [_minutes(one[2], one[3]) if one and one[2] else 0 for one in told]
+    seconds = (stamps.astype(np.int64) - np.array(ahead, np.int64) * 60_000_000_000) * 1e-9
     return np.where(np.isnat(stamps), np.nan, seconds)
+
+
+def _minutes(hours: str, minutes: str) -> int:
+    """Return the minutes by which a zone is ahead of UTC, from such as +05 and 30."""
+    return int(hours) * 60 + int(f'{hours[0]}{minutes}')
+
+
+def _since(cells: Sequence[str]) -> np.ndarray:
+    """Return the seconds (N,) of times without a date, nan for an empty cell."""
+    told = [_PASSED.match(cell) for cell in cells]
+    return np.array([86400 * int(one[1] or 0) + 3600 * int(one[2]) + 60 * int(one[3])
+                     + float(one[4].replace(',', '.')) if one else np.nan for one in told])
 
 
 def _thorough(path: Path, rows: list[str], places: list[int], names: list[str], separator: str,
@@ -297,8 +352,9 @@ def numbers_in(path: Path, name: str, cells: Sequence[str], comma: bool,
     wrong = [k for k, value in enumerate(values) if value is None]
     if not wrong:
         return np.array(values, float)
-    if all(_DATE.match(cell) for cell in cells if cell):
-        return _seconds(cells)
+    for pattern, made in ((_DATE, _seconds), (_PASSED, _since)):
+        if all(pattern.match(cell) for cell in cells if cell):
+            return made(cells)
     if len(wrong) < _FEW * len(values):
         k = wrong[0]
         raise InputError(f'{path}, {place(k)}, column {name[:40]!r}: {cells[k][:40]!r} is not '

@@ -76,8 +76,10 @@ def read_ulog(path: str | Path, mapping: Mapping | None = None,
              *([f'{counted(len(log.dropouts), "dropout")} while logging'] if log.dropouts else [])]
     commands: list[str] = []
     logging: list[str] = []
-    read = [_attitude(path, data), *_position(path, data, logging), _rate(path, data),
-            _specific_force(path, data), _battery(path, data)]
+    position = _position(path, data, logging)
+    read = [_attitude(path, data, position), *position, _rate(path, data),
+            _specific_force(path, data),
+            _battery(path, log, data, mapping.instances.get('battery_status'))]
     read += _outputs(path, log, data, mapping.actuators, vehicle, commands,
                      mapping.instances.get('actuator_outputs'))
     streams = [stream for stream in read if stream is not None]
@@ -222,9 +224,12 @@ def _stream(path: Path, topic: str, data: dict, names: Sequence[str], values: np
                   dict(zip(names, values.T, strict=True)), between)
 
 
-def _attitude(path: Path, data: dict) -> Stream:
-    topic = next((name for name in ('vehicle_attitude', 'vehicle_odometry', 'estimator_attitude')
-                  if data[name] is not None), None)
+def _attitude(path: Path, data: dict, position: Sequence[Stream]) -> Stream:
+    topics = 'vehicle_attitude', 'vehicle_odometry', 'estimator_attitude'
+    if any(stream.source == 'topic vehicle_odometry' for stream in position) and _not_north(
+            data['vehicle_odometry']):
+        topics = 'vehicle_odometry', 'vehicle_attitude', 'estimator_attitude'
+    topic = next((name for name in topics if data[name] is not None), None)
     if topic is None:
         raise InputError(f'{path}: has no topic vehicle_attitude, vehicle_odometry or '
                          'estimator_attitude; log it (SDLOG_PROFILE, default set)')
@@ -233,6 +238,14 @@ def _attitude(path: Path, data: dict) -> Stream:
         norm = np.linalg.norm(q, axis=-1, keepdims=True)
         q = np.where(norm > 1e-3, q / norm, np.nan)
     return _stream(path, topic, data[topic], QUATERNION, frames.attitude(q, 'NED', 'FRD'))
+
+
+def _not_north(odometry: dict) -> bool:
+    """Return whether the attitudes in an odometry are in its own frame, of any heading."""
+    frames_frd = {'pose_frame': 2, 'local_frame': 1}    # of PX4 1.14 and later, and before
+    own = any(np.any(odometry[name] == frd) for name, frd in frames_frd.items()
+              if name in odometry)
+    return own and 'q[0]' in odometry and bool(np.isfinite(odometry['q[0]']).all())
 
 
 def _position(path: Path, data: dict, notes: list[str]) -> list[Stream]:
@@ -316,14 +329,18 @@ def _densest(data: dict, fields: dict[str, str]) -> tuple[str, str]:
                 if DENSER * count >= most)
 
 
-def _battery(path: Path, data: dict) -> Stream | None:
+def _battery(path: Path, log: ULog, data: dict, instance: int | None) -> Stream | None:
+    """Return the stream of the battery, of the first that is connected where none is named."""
     topic = 'battery_status'
     if data[topic] is None:
         return None
-    voltage = _values(path, topic, data[topic], ['voltage_v'])
-    if np.isfinite(voltage).sum() < 2:
+    every = [one.data for one in sorted(log.data_list, key=lambda one: one.multi_id)
+             if one.name == topic] if instance is None else [data[topic]]
+    voltages = [_values(path, topic, one, ['voltage_v']) for one in every]
+    k = next((k for k, values in enumerate(voltages) if (values > 0.0).any()), 0)
+    if np.isfinite(voltages[k]).sum() < 2:
         return None   # a short log of a slow topic
-    return _stream(path, topic, data[topic], ('vbat',), voltage, SLOW)
+    return _stream(path, topic, every[k], ('vbat',), voltages[k], SLOW)
 
 
 def _outputs(path: Path, log: ULog, data: dict, actuators: Actuators | None,

@@ -9,7 +9,7 @@ import numpy as np
 
 from quad_ident_ros.data.columns import FORCE, POSITION, RATE, VELOCITY
 from quad_ident_ros.data.guess.draft import Draft, together
-from quad_ident_ros.data.guess.names import TURNING
+from quad_ident_ros.data.guess.names import TURNING, WORLD
 from quad_ident_ros.data.guess.series import ratio_of, unit_length
 from quad_ident_ros.data.mapping import factor_of
 from quad_ident_ros.gravity import GRAVITY
@@ -84,8 +84,10 @@ def axes(draft: Draft) -> None:
             down, why = True, 'the height'
         elif low > -BELOW * abs(high):
             down, why = False, 'the height'
+    known = [found for group in (POSITION, VELOCITY) if (found := draft.found[group])]
+    named = {WORLD.get(tuple(draft.names[name] for name in found)): found for found in known}
     text = ' '.join(draft.names.values())
-    if down is None and re.search(r'(^|_| )(ned|frd)(_| |$)', text):
+    if down is None and ('NED' in named or re.search(r'(^|_| )(ned|frd)(_| |$)', text)):
         down, why = True, 'the names'
     if down:
         draft.body = 'FRD'
@@ -93,6 +95,9 @@ def axes(draft: Draft) -> None:
         draft.world = 'NED' if level else 'ENU'
     elif down is not None and draft.attitude is not None and _up(draft.attitude) < 0:
         draft.guess.doubts.append('world, body: by the attitude the vehicle flies upside down')
+    for world in {'NED', 'ENU'} & named.keys() - {draft.world}:
+        draft.guess.doubts.append(f'world: {together(named[world])} are {world} by '
+                                  f'their names, the others {draft.world} by {why}')
     said = f'by {why}' if why else 'assumed, as nothing shows it'
     draft.guess.said.append(f'frames {draft.world} and {draft.body}, {said}')
 
@@ -106,7 +111,8 @@ def velocities(draft: Draft) -> None:
     unit = draft.unit_of(names, ('m/s', 'mm/s', 'cm/s'))
     if not unit:
         fast = float(np.nanquantile(np.abs(values), 0.9))
-        unit = 'mm/s' if fast > QUICK else 'm/s'
+        place = draft.columns['px'].unit if 'px' in draft.columns else ''
+        unit = 'm/s' if fast <= QUICK else 'cm/s' if place == 'cm' else 'mm/s'
     frame, said = 'world', 'as no stream contradicts it'
     if any('body' in draft.names[name] for name in names):
         frame, said = 'body', 'by its name'
@@ -123,7 +129,10 @@ def _by_velocity(draft: Draft, names: Sequence[str]) -> str:
     given = draft.found[VELOCITY]
     if given is None:
         return ''
-    said = draft.unit_of(given, ('m/s', 'mm/s', 'cm/s')) or 'm/s'
+    said = draft.unit_of(given, ('m/s', 'mm/s', 'cm/s'))
+    if not said and np.nanquantile(np.abs(draft.values(given)), 0.9) > QUICK:
+        return ''       # it is in mm or cm, and so is the position
+    said = said or 'm/s'
     place, speed = draft.values(names), draft.values(given) * factor_of('vx', said)
     width = max(1, round(SPAN / max(float(np.nanmedian(draft.dt())), 1e-6)))
     if len(place) < 4 * width:

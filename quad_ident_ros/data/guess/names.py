@@ -35,10 +35,22 @@ AXES = {
 TURNED = re.compile(r'(^|_)(ang|angular|gyro|rot)')
 """Of names that are of a rotation, which a velocity or a force is not."""
 
+
+def _named(trios: tuple[tuple[str, ...], ...], *patterns: str) -> list[tuple[str, ...]]:
+    return [tuple(pattern.format(axis) for axis in trio) for trio in trios for pattern in patterns]
+
+
+_COMPASS = (('north', 'east', 'down'), ('n', 'e', 'd'), ('east', 'north', 'up'), ('e', 'n', 'u'))
 BARE: dict[tuple[str, ...], tuple[tuple[str, ...], ...]] = {
-    POSITION: (('x', 'y', 'z'), ('tx', 'ty', 'tz')),
-    VELOCITY: (('xdot', 'ydot', 'zdot'), ('x_dot', 'y_dot', 'z_dot')),
+    POSITION: (('x', 'y', 'z'), ('tx', 'ty', 'tz'), *_COMPASS,
+               *_named(_COMPASS, 'p_{}', 'p{}', 'pos_{}')),
+    VELOCITY: (('xdot', 'ydot', 'zdot'), ('x_dot', 'y_dot', 'z_dot'),
+               *_named(_COMPASS, 'v_{}', 'v{}', 'vel_{}')),
     RATE: (('p', 'q', 'r'), ('gx', 'gy', 'gz'), ('g_x', 'g_y', 'g_z'))}
+WORLD = {trio: world for group in (POSITION, VELOCITY) for trio in BARE[group]
+         for world, end in (('NED', ('d', 'down')), ('ENU', ('u', 'up'))) if trio[2].endswith(end)}
+"""Names by points of the compass -> the axes of the world that they say."""
+
 ANGLE = {'phi': r'(^|_)(roll|phi)$', 'theta': r'(^|_)(pitch|theta)$',
          'psi': r'(^|_)(yaw|psi|heading)$'}
 TURNING = ('roll', 'pitch', 'yaw')

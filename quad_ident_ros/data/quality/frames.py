@@ -17,6 +17,8 @@ STILL = 1e-6              # rad/s rms: an attitude that does not turn, but for r
 TURNED = 0.003            # share of its power by which a velocity in body axes is off at least
 STRANGE = 0.5             # correlation under which position and velocity do not go together
 SLOW = 0.3                # m/s rms under which noise may hide that they do
+HEADING = np.radians([20, 35])  # off for a warning and an error: tilts to fit are under 29 deg
+DRAGGED = np.radians([45, 100])     # where no force is measured: drag on a circle looks alike
 TURN = ('turn the world into ENU (x east, y north, z up) and the body into FLU, or say '
         'world: NED, body: FRD in a mapping')
 
@@ -165,17 +167,38 @@ def _motion(grid: Grid, attitude: np.ndarray) -> list[Finding]:
                       'thrust say', f'turn the sign of p{axis} and v{axis}, or the attitude')
               for axis in _opposed(speeding, force)]
     if sure > SURE:     # a height below zero is then no more than another origin
-        return turned if grid.record.has('ax', 'ay', 'az') else []
-    if sure < -SURE:
+        return turned or _heading(speeding, force) if grid.record.has('ax', 'ay', 'az') else []
+    heading = _heading(speeding, force)
+    if sure < -SURE and not (heading and grid.record.has('ax', 'ay', 'az')):
         return [Finding('frame_ned', 'error', 'position, velocity, attitude, rate',
                         'the thrust pushes down: the world axes are NED and those of the body FRD',
                         'turn the world into ENU (x east, y north, z up) and the body into FLU')]
+    if heading:
+        return heading
     swapped = speeding[:, [1, 0]] if speeding.shape[1] == 2 else world_vector(speeding, 'NED')
     if correlation(swapped, force)[0] < max(SURE, sure + BETTER):
         return turned or _height(grid.record)
     return [Finding('frame_ned', 'error', 'position, velocity',
                     'the velocity changes as the specific force says only where it is read as '
                     'NED', 'turn position and velocity into ENU (x east, y north, z up)')]
+
+
+def _heading(speeding: np.ndarray, force: np.ndarray) -> list[Finding]:
+    """Find attitudes whose heading counts from another direction than position and velocity."""
+    made, given = (one[:, 0] + 1j * one[:, 1] for one in (speeding, force))
+    size = np.sqrt(np.sum(np.abs(made) ** 2) * np.sum(np.abs(given) ** 2))
+    turn, mirrored = np.sum(made * np.conj(given)), abs(np.sum(made * given))
+    angle = np.angle(turn)
+    low, high = HEADING if speeding.shape[1] == 3 else DRAGGED
+    if not (abs(turn) > SURE * size and abs(turn) > mirrored + BETTER * size
+            and abs(angle) > low):
+        return []
+    return [Finding('heading', 'error' if abs(angle) > high else 'warning',
+                    'position, velocity, attitude',
+                    'the velocity changes as attitude and thrust say only where the attitude is '
+                    f'turned about z of the world by {np.degrees(angle):.0f} deg: its heading '
+                    'does not count from x of the position',
+                    'take position and attitude from one source, or turn the attitude by this')]
 
 
 def _height(record: FlightRecord) -> list[Finding]:

@@ -99,7 +99,9 @@ def _wrong(told: '_Evidence', vehicle: Vehicle) -> list[Finding]:
             f'the commands turn the body as rotors {", ".join(str(k + 1) for k in best)} of '
             f'{vehicle.name} would (correlation {scores[best]:.2f}, as they are '
             f'{scores[declared]:.2f})',
-            'put the commands into the order of the vehicle file, or correct that')]
+            'put the commands into the order of the vehicle file, or correct that; for outputs in '
+            'the order of the log a mapping does it: actuators with kind and order: '
+            f'{[best.index(k) + 1 for k in range(len(best))]}')]
     return _spin(told, vehicle)
 
 

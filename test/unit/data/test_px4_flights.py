@@ -38,6 +38,7 @@ from quad_ident_ros.data.split import joined, part
 from quad_ident_ros.data.thrust_level import FULL_SPEED
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.flights import track_of
+from quad_ident_ros.model.attitude import product, rotate
 from quad_ident_ros.model.motors import motors_from
 from quad_ident_ros.model.vehicle import load_vehicle, Rotor
 
@@ -174,6 +175,29 @@ def test_odometry_does_where_the_other_topics_are_missing(tmp_path):
     read = load(log(tmp_path, ulog(samples, FORMATS)))
     for names in (('px', 'py', 'pz'), ('vx', 'vy', 'vz'), ('wx', 'wy', 'wz')):
         np.testing.assert_allclose(read.stack(*names), SMALL.stack(*names), atol=1e-6)
+
+
+@pytest.mark.parametrize('field, frame, own', [
+    ('pose_frame', 2, True), ('local_frame', 1, True), ('pose_frame', 1, False)])
+def test_an_odometry_of_another_heading_has_its_own_attitude(tmp_path, field, frame, own):
+    """Visual odometry starts at any heading, and vehicle_attitude has that of the compass."""
+    turn = np.array([np.cos(0.5), 0.0, 0.0, np.sin(0.5)])     # 1 rad to the left
+    stamps = np.round(SMALL.t * 1e6).astype(int) + FIRST
+    q = product(turn, SMALL.stack('qw', 'qx', 'qy', 'qz'))
+    place, speed = (rotate(turn, SMALL.stack(*names)) for names in (('px', 'py', 'pz'),
+                                                                    ('vx', 'vy', 'vz')))
+    rows = np.hstack([ned(place), ned_attitude(q), ned(speed)]).astype('<f4')
+    samples = [one for one in px4_samples(SMALL) if one[0] != 'vehicle_local_position']
+    samples += [('vehicle_odometry', 0, int(stamp), row.tobytes() + bytes([frame]))
+                for stamp, row in zip(stamps, rows, strict=True)]
+    fields = ('uint64_t timestamp', 'uint64_t timestamp_sample', 'float[3] position', 'float[4] q',
+              'float[3] velocity', f'uint8_t {field}')
+    read = load(log(tmp_path, ulog(sorted(samples, key=lambda one: one[2]),
+                                   {**FORMATS, 'vehicle_odometry': fields})))
+    np.testing.assert_allclose(read.stack('px', 'py', 'pz'), place[:len(read)], atol=1e-6)
+    expected = (q if own else SMALL.stack('qw', 'qx', 'qy', 'qz'))[:len(read)]
+    off = np.sum(read.stack('qw', 'qx', 'qy', 'qz') * expected, axis=1)
+    np.testing.assert_allclose(np.abs(off), 1.0, atol=1e-6)
 
 
 @pytest.mark.parametrize('named, first, said', [

@@ -127,3 +127,15 @@ def test_the_raw_gyro_is_taken_where_the_corrected_one_is_scarce(tmp_path, every
     read = load(log(tmp_path, ulog(samples)))
     names = ('wx', 'wy', 'wz')
     np.testing.assert_allclose(read.stack(*names), taken * SMALL.stack(*names), atol=1e-4)
+
+
+def test_the_battery_is_the_one_that_is_connected(tmp_path):
+    """A board with two sensors logs the one without a battery as the first instance."""
+    stamps = np.round((SMALL.t - SMALL.t[0]) * 1e6).astype(int) + FIRST
+    samples = [one for one in px4_samples(SMALL) if one[0] != 'battery_status']
+    samples += [('battery_status', number, int(stamp), [volt])
+                for stamp in stamps[::10] for number, volt in ((0, 0.0), (1, 15.5))]
+    path = log(tmp_path, ulog(samples))
+    assert load(path).columns['vbat'][0] == 15.5
+    first = mapping_from({'instances': {'battery_status': 0}}, 'a test')
+    assert not load(path, first).has('vbat')

@@ -4,6 +4,7 @@
 
 from dataclasses import replace
 from itertools import permutations, product
+import json
 
 from flightmaker import changed, flight, VEHICLE
 import numpy as np
@@ -13,6 +14,8 @@ from real import needs_real_flights, real_flight, real_vehicle
 
 from quad_ident_ros.cli.main import main
 from quad_ident_ros.data.csv import write_csv
+from quad_ident_ros.data.load import load
+from quad_ident_ros.data.mapping import mapping_from
 from quad_ident_ros.data.quality import cautions, findings, refuted
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop
@@ -105,6 +108,23 @@ def test_an_order_that_another_flight_refutes_is_a_warning():
               if one['code'] == 'rotor_order']
     assert said['severity'] == 'warning' and said['flight'] == 'wrong'
     assert cautions(right, VEHICLE, refuted([wrong, right], VEHICLE)) == []
+
+
+def test_the_order_that_a_mapping_has_to_give_is_named(tmp_path):
+    """Outputs of another order, which the lines of the remedy put into that of the rotors."""
+    record = flight()
+    logged = record.stack('cmd2', 'cmd3', 'cmd1', 'cmd4')
+    table = {**{name: values for name, values in record.columns.items() if name not in CMD},
+             't': record.t, **named(('m1', 'm2', 'm3', 'm4'), logged)}
+    path = tmp_path / 'f.csv'
+    np.savetxt(path, np.column_stack(list(table.values())), delimiter=',', comments='',
+               header=','.join(table))
+    [found] = [one for one in findings(load(path, vehicle=VEHICLE), VEHICLE)
+               if one.code == 'rotor_order']
+    order = json.loads(found.remedy.rpartition('order: ')[2])
+    mapped = mapping_from({'actuators': {'kind': 'speed', 'order': order}}, 'a test')
+    read = load(path, mapped, VEHICLE)
+    np.testing.assert_allclose(read.stack(*CMD), record.stack(*CMD)[:len(read)], rtol=1e-9)
 
 
 def mirrored(vehicle):

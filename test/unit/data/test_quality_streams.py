@@ -2,14 +2,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """Streams that are dead, have a wrong sign or are of something else: no verdict stands on them."""
 
+import re
+
 from flightmaker import changed, flight, VEHICLE
 import numpy as np
 import pytest
 from quality_records import CMD
 
 from quad_ident_ros.data.quality import cautions, findings
+from quad_ident_ros.data.record import QUATERNION
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop
+from quad_ident_ros.model.attitude import product
 
 
 def columns(record, names, change):
@@ -93,3 +97,32 @@ def test_a_vehicle_that_stands_needs_no_thrust():
     t = np.concatenate([record.t[0] + record.period() * np.arange(-rest, 0), record.t])
     found = findings(type(record)(t, stood, record.info), VEHICLE)
     assert not [one for one in found if one.code == 'thrust']
+
+
+def turned(record, degrees):
+    """Return a record whose attitude has another heading, and its gyro none."""
+    half = np.radians(degrees) / 2
+    q = product(np.array([np.cos(half), 0.0, 0.0, np.sin(half)]), record.stack(*QUATERNION))
+    return changed(record, **dict(zip(QUATERNION, q.T, strict=True)))
+
+
+@pytest.mark.parametrize(('degrees', 'measured', 'severity'), [
+    (25.0, True, 'warning'), (-63.0, True, 'error'), (120.0, True, 'error'),
+    (175.0, True, 'error'), (63.0, False, 'warning'), (-120.0, False, 'error')])
+def test_a_heading_that_is_of_another_source_is_found(degrees, measured, severity):
+    """A compass beside motion capture, or a map that a drone began at any heading."""
+    record = turned(flight(), degrees)
+    record = record if measured else changed(record, ax=None, ay=None, az=None)
+    [found] = [one for one in findings(record, VEHICLE) if one.severity != 'info']
+    assert (found.code, found.severity) == ('heading', severity)
+    said = float(re.search(r'by (-?[0-9]+) deg', found.message)[1])
+    assert said == pytest.approx(-degrees, abs=3.0)
+
+
+@pytest.mark.parametrize('measured', [True, False])
+def test_drag_on_a_circle_is_no_heading(measured):
+    """It lies along the velocity, a quarter turn ahead of the force that bends the path."""
+    record = fly_closed_loop(VEHICLE, {'rotor_drag': {'coefficient': 0.3}}, 'circle',
+                             duration=10.0, seed=1)
+    record = record if measured else changed(record, ax=None, ay=None, az=None)
+    assert 'heading' not in [one.code for one in findings(record, VEHICLE)]

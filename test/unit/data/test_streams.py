@@ -47,6 +47,15 @@ def test_samples_that_cannot_be_are_left_out_and_counted():
         '1 sample with the stamp of another']
 
 
+@pytest.mark.parametrize('voltage', [0.0, -1.0, np.nan])
+def test_a_battery_that_is_not_measured_is_left_out(voltage):
+    """Autopilots without a sensor log 0 V, or -1."""
+    t = np.arange(10) * 0.1
+    _, _, columns, notes = join('f', [stream(t, HELD, b=t),
+                                      stream(t, SLOW, vbat=np.full(10, voltage))])
+    assert list(columns) == ['b'] and 'voltage is not above zero' in notes[0]
+
+
 def test_streams_that_share_no_time_are_refused():
     with pytest.raises(InputError, match='share no time'):
         join('f', [stream([0.0, 1.0], a=np.zeros(2)), stream([2.0, 3.0], HELD, b=np.zeros(2))])

@@ -325,6 +325,17 @@ def test_columns_of_other_types_in_parquet_are_numbers(tmp_path):
     assert 'columns of text are left out: tags' in said(read)
 
 
+def test_an_index_of_times_in_parquet_needs_no_name(tmp_path):
+    """As pandas writes one."""
+    pyarrow = pytest.importorskip('pyarrow', reason='pyarrow is not installed')
+    from pyarrow import parquet
+    found = others()
+    stamps = pyarrow.array(np.round(1e3 * found.pop('timestamp')).astype('timedelta64[ns]'))
+    path = tmp_path / 'f.parquet'
+    parquet.write_table(pyarrow.table({**found, '__index_level_0__': stamps}), path)
+    np.testing.assert_allclose(np.diff(load(path).t), np.diff(FLIGHT.t), atol=1e-6)
+
+
 def test_axes_that_are_counted_are_known_unless_there_is_a_fourth(tmp_path):
     """As ulog2csv writes the topics of PX4; four of a name are rotors."""
 

@@ -4,7 +4,15 @@
 
 from dataclasses import replace
 
-from flightmaker import changed, flight, VEHICLE, world_velocity_in_body
+from flightmaker import (
+    changed,
+    flight,
+    frd,
+    ned,
+    ned_attitude,
+    VEHICLE,
+    world_velocity_in_body,
+)
 import numpy as np
 import pytest
 from reader_checks import refused
@@ -128,6 +136,75 @@ def test_what_motive_writes_is_told_and_asked_for_its_axes(tmp_path):
         't': 'Time (Seconds)', 'q': [f'Rotation {letter}' for letter in 'XYZW'],
         'px': 'Position X', 'py': 'Position Y', 'pz': 'Position Z'}}, 'a test')
     same(load(path, mapping), PLACE, Q)
+
+
+def test_markers_beside_a_body_of_motive_are_told_apart(tmp_path):
+    """A take has the markers of the body as well, whose columns have the names of its own."""
+    kinds = 7 * ['Rigid Body'] + 6 * ['Rigid Body Marker']
+    owners = 7 * ['quad'] + 3 * ['quad:Marker1'] + 3 * ['quad:Marker2']
+    names = ['Rotation'] * 4 + ['Position'] * 9
+    above = ('Format Version,1.23,Take Name,one,Length Units,Meters\n\n'
+             + ''.join(f',{head},{",".join(cells)}\n' for head, cells in (
+                 ('Type', kinds), ('Name', owners), ('ID', 7 * ['1'] + 3 * ['2'] + 3 * ['3'])))
+             + f',,{",".join(names)}\nFrame,Time (Seconds),X,Y,Z,W{3 * ",X,Y,Z"}\n')
+    place = FLIGHT.stack(*PLACE)
+    rows = np.column_stack([np.arange(len(T)), T, FLIGHT.stack(*XYZW), place, place + 1.0,
+                            place - 1.0])
+    path = tmp_path / 'take.csv'
+    path.write_text(above + '\n'.join(','.join(map(repr, row)) for row in rows.tolist()) + '\n')
+    refused(path, 'Motive', 'Z up', '--write-mapping')
+    mapping = mapping_from({'quaternion': 'xyzw', 'columns': {
+        't': 'Time (Seconds)', 'q': [f'Rotation {letter}' for letter in 'XYZW'],
+        **{f'p{letter.lower()}': f'quad Position {letter}' for letter in 'XYZ'}}}, 'a test')
+    same(load(path, mapping), PLACE, Q)
+
+
+@pytest.mark.parametrize(('stamp', 'name'), [
+    (lambda t: f'2026-03-01 10:00:{t:09.6f}', ''), (lambda t: f'0 days 00:00:{t:09.6f}', ''),
+    (lambda t: f'2026-03-01 10:00:{t:09.6f}+02:00', 'when'), (lambda t: f'{t + 0.5:.6f}', ''),
+    (lambda t: f'10:00:{t:09.6f}', 'clock')], ids=['date', 'delta', 'zone', 'seconds', 'time'])
+def test_an_index_of_pandas_is_the_time(tmp_path, stamp, name):
+    """An index has no name unless it is given one; a zone is that of the clock."""
+    rows = zip(T, FLIGHT.stack(*PLACE, *Q, *RATE).tolist(), strict=True)
+    path = tmp_path / 'index.csv'
+    path.write_text(f'{name},x,y,z,qw,qx,qy,qz,wx,wy,wz\n' + ''.join(
+        f'{stamp(t)},{",".join(map(repr, row))}\n' for t, row in rows))
+    read = load(path)
+    np.testing.assert_allclose(read.t - read.t[0], T[:len(read)], atol=1e-6)
+    np.testing.assert_allclose(read.stack(*PLACE), FLIGHT.stack(*PLACE)[:len(read)], atol=1e-6)
+    if name == 'when':
+        assert read.info['start_ns'] == np.datetime64('2026-03-01T08:00:00', 'ns').astype(int)
+
+
+def test_an_index_that_counts_rows_is_no_time(tmp_path):
+    found = {'': 2.0 * np.arange(len(T)), 'timestamp': T,
+             **columns('', 'xyz', PLACE), **named(Q, FLIGHT.stack(*Q))}
+    read = load(table(tmp_path, found))
+    same(read, PLACE, Q)
+    assert not read.has('time') and not read.has('index')
+
+
+def test_points_of_the_compass_are_axes(tmp_path):
+    """A speed along north, east and down belongs to a position of such names."""
+    swapped = {'t': T, **named(('N', 'E', 'D'), ned(FLIGHT.stack(*PLACE))),
+               **named(('vN', 'vE', 'vD'), ned(FLIGHT.stack(*SPEED)))}
+    q = ned_attitude(FLIGHT.stack(*Q))
+    found = {**swapped, **named(Q, q), **named(RATE, frd(FLIGHT.stack(*RATE)))}
+    same(load(table(tmp_path, found)), PLACE, SPEED, Q, RATE)
+    up = {'t': T, **columns('', ('east', 'north', 'up'), PLACE), **named(Q, FLIGHT.stack(*Q)),
+          **columns('vel_', ('east', 'north', 'up'), SPEED)}
+    same(load(table(tmp_path, up)), PLACE, SPEED, Q)
+    other = {**swapped, **named(Q, FLIGHT.stack(*Q)), **named(FORCE, FLIGHT.stack(*FORCE))}
+    refused(table(tmp_path, other), 'N, E, D', 'NED', 'ENU', '--write-mapping')
+
+
+@pytest.mark.parametrize('size', [100.0, 1000.0])
+def test_a_unit_that_position_and_velocity_share_is_told_by_the_tilt(tmp_path, size):
+    """Centimetres or millimetres without a word."""
+    found = {'t': T, **named(('x', 'y', 'z'), size * FLIGHT.stack(*PLACE)),
+             **named(('vx', 'vy', 'vz'), size * FLIGHT.stack(*SPEED)),
+             **named(Q, FLIGHT.stack(*Q))}
+    same(load(table(tmp_path, found)), PLACE, SPEED, Q)
 
 
 def test_headings_without_cells_tell_names_apart(tmp_path):
