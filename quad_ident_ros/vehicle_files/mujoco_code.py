@@ -139,12 +139,17 @@ LAG = '''
 
 def lagging(model, data, controls):
     """Return controls (n,) with which the lag of the actuators is one of the rotors' speeds."""
-    act = np.maximum(data.act[model.actuator_actadr[ACTUATORS]], 0.0)
+    places = model.actuator_actadr[ACTUATORS]
+    act = np.maximum(data.act[places], 0.0)
     now, then = np.sqrt(act), np.sqrt(np.maximum(limited(model, controls), 0.0))
     lag = np.where(then > now, {rise}, {fall})
     soon = then + (now - then) * np.exp(-model.opt.timestep / lag)
     done = 1.0 - np.exp(-model.opt.timestep / model.actuator_dynprm[ACTUATORS, 0])
-    return act + (soon ** 2 - act) / done
+    wanted = act + (soon ** 2 - act) / done
+    given = limited(model, wanted)
+    # Beyond the range of the controls, the actuators' own state makes up for the rest.
+    data.act[places] = np.where(given == wanted, act, (soon ** 2 - given * done) / (1.0 - done))
+    return given
 '''
 COMMANDS = '''
 

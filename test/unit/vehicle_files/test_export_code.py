@@ -139,6 +139,21 @@ def test_a_flight_in_mujoco_is_that_of_our_model(effects):
     np.testing.assert_allclose(data.qvel[3:], ours[-1, 10:], atol=1e-3)
 
 
+def test_rotors_slow_down_as_fast_where_their_controls_end_at_zero():
+    vehicle = replace(VEHICLE, effects={'motor_lag': {'time_constant': 0.05}})
+    mujoco, model, space, _ = model_of(vehicle)
+    model.opt.timestep = 0.001
+    assert model.actuator_ctrllimited.all() and not model.actuator_ctrlrange[:, 0].any()
+    data, line = mujoco.MjData(model), space['Commands']()
+    hover = vehicle.thrust_coefficient * vehicle.hover_speed ** 2
+    data.qpos[2], data.act[:] = 1.0, hover
+    for _ in range(50):
+        line.command(model, data, np.zeros(4))
+        mujoco.mj_step(model, data)
+    # The speed falls by a lag, so that the thrust falls as its square: twice as fast.
+    np.testing.assert_allclose(data.act, hover * np.exp(-2.0), rtol=1e-6)
+
+
 def test_the_lag_of_the_actuators_is_ours_for_small_changes_without_the_code():
     lag = {'motor_lag': {'time_constant': 0.05}}
     vehicle = replace(VEHICLE, effects=lag, linear_drag=(0.0, 0.0, 0.0),
