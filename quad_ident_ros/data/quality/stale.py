@@ -11,6 +11,9 @@ from quad_ident_ros.model.vehicle import Vehicle
 
 JUMP = 0.2       # of the usual step: from rest a stream sets out slower
 ROUNDING = 1e-9  # m, rad/s, m/s^2: a step that is no motion
+SLOWEST = 0.05   # m/s, rad/s: what is slower may stand, with sensors that have errors
+ENDED = 0.1      # s at the end of a record, at least: samples of a slow stream stay as long
+LEFT = 0.1       # of a record without a stream, beyond which a fit would follow what is missing
 STREAMS = {'position': ('px', 'py', 'pz'), 'attitude': ('qw', 'qx', 'qy', 'qz'),
            'rate': ('wx', 'wy', 'wz'), 'specific force': ('ax', 'ay', 'az')}
 
@@ -31,6 +34,30 @@ def held(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
             f'{100 * share:.1f} % of the samples repeat the last one, up to {longest} in a row, '
             'while the vehicle moves',
             without(record.t, repeats, f'log the {name} at its own rate with its own stamps')))
+    return found
+
+
+def ended(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
+    """Find streams that repeat their last sample to the end while what changes them is not 0."""
+    found = []
+    for name, change in (('position', ('vx', 'vy', 'vz')), ('attitude', STREAMS['rate'])):
+        if not record.has(*STREAMS[name], *change):
+            continue
+        values = record.stack(*STREAMS[name])
+        changes = np.flatnonzero(np.any(np.diff(values, axis=0) != 0, axis=1))
+        if len(changes) < 2:
+            continue
+        first, usual = int(changes[-1]) + 2, int(np.diff(changes).max())
+        repeats = np.arange(len(record)) >= first
+        moved = np.linalg.norm(record.stack(*change)[repeats], axis=1)
+        if (len(moved) < 2 * usual or record.t[-1] - record.t[first - 1] < ENDED
+                or np.median(moved) <= SLOWEST):
+            continue
+        found.append(Finding(
+            'ended', 'error' if repeats.mean() > LEFT else 'warning',
+            f'{name}, t = {record.t[first]:.3f} s',
+            f'from here to the end the {name} stays as it is, while the vehicle moves',
+            without(record.t, repeats, f'see why the {name} was no longer logged')))
     return found
 
 

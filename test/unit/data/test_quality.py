@@ -156,6 +156,30 @@ def test_one_frozen_stretch_is_found():
     assert 't = 7.010' in finding.where
 
 
+def ended(record, share, names):
+    """Return a record in which columns repeat the last value of a share of it to the end."""
+    index = np.minimum(np.arange(len(record)), int(share * len(record)))
+    return changed(record, **{name: record.columns[name][index] for name in names})
+
+
+@pytest.mark.parametrize(('names', 'share', 'severity'), [
+    (P + V + Q + W, 0.5, 'error'), (P, 0.5, 'error'), (Q, 0.96, 'warning')])
+def test_streams_that_end_before_the_record_does_are_found(names, share, severity):
+    found = [one for one in findings(ended(flight(), share, names), VEHICLE)
+             if one.code == 'ended']
+    assert len(found) == (2 if set(P + Q) <= set(names) else 1)
+    assert {one.severity for one in found} == {severity}
+    assert all('--to' in one.remedy for one in found)
+
+
+def test_a_vehicle_that_stands_at_the_end_is_none_of_these():
+    record = flight()
+    rest = np.arange(len(record)) < len(record) // 2
+    still = ended(record, 0.5, P + V + Q + W)
+    still = changed(still, **{name: still.columns[name] * rest for name in V + W})
+    assert 'ended' not in codes(still, VEHICLE)
+
+
 def test_jumps_of_the_attitude_are_found_and_counted():
     record = flight()
     turn = np.zeros((len(record), 4))
