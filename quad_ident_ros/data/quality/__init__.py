@@ -46,8 +46,8 @@ COLUMNS = (columns.known, columns.incomplete, columns.differentiated, columns.fr
            rotors.count)
 """Checks of columns by themselves."""
 
-COMPARISONS = (stale.held, stale.ended, stale.marked, glitches.attitude, glitches.others,
-               units.rates_in_degrees, units.euler_in_degrees, units.force_in_g,
+COMPARISONS = (stale.held, stale.ended, stale.stuck, stale.marked, glitches.attitude,
+               glitches.others, units.rates_in_degrees, units.euler_in_degrees, units.force_in_g,
                units.position_in_millimetres, units.speeds_in_rpm, *frames.CHECKS,
                rotors.hover, rotors.size, thrust.carried, thrust.other_vehicle,
                rotors.order_and_spin, moments.unit, thrust.level, clock.attitude, clock.velocity,

@@ -13,7 +13,11 @@ JUMP = 0.2       # of the usual step: from rest a stream sets out slower
 ROUNDING = 1e-9  # m, rad/s, m/s^2: a step that is no motion
 SLOWEST = 0.05   # m/s, rad/s: what is slower may stand, with sensors that have errors
 ENDED = 0.1      # s at the end of a record, at least: samples of a slow stream stay as long
+STUCK = 0.3      # s: a stream of a GPS may repeat its samples for as long
 LEFT = 0.1       # of a record without a stream, beyond which a fit would follow what is missing
+UNSTEADY = 0.5   # of the steps of a column, at least, that are none of its repeats
+BENDING = 0.2    # of its bends, at least, that one back follows: three quarters of white noise's
+VELOCITY = 'vx', 'vy', 'vz'
 STREAMS = {'position': ('px', 'py', 'pz'), 'attitude': ('qw', 'qx', 'qy', 'qz'),
            'rate': ('wx', 'wy', 'wz'), 'specific force': ('ax', 'ay', 'az')}
 
@@ -40,7 +44,7 @@ def held(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
 def ended(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """Find streams that repeat their last sample to the end while what changes them is not 0."""
     found = []
-    for name, change in (('position', ('vx', 'vy', 'vz')), ('attitude', STREAMS['rate'])):
+    for name, change in (('position', VELOCITY), ('attitude', STREAMS['rate'])):
         if not record.has(*STREAMS[name], *change):
             continue
         values = record.stack(*STREAMS[name])
@@ -59,6 +63,48 @@ def ended(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
             f'from here to the end the {name} stays as it is, while the vehicle moves',
             without(record.t, repeats, f'see why the {name} was no longer logged')))
     return found
+
+
+def stuck(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
+    """
+    Find columns with noise that stay exactly as they are for a while in which the vehicle moves.
+
+    Measured values never repeat for long by chance, whether a jump ends the repeats or not. A
+    command may stay at either end of its range.
+    """
+    moves = np.max([np.linalg.norm(record.stack(*columns), axis=1)
+                    for columns in (VELOCITY, STREAMS['rate']) if record.has(*columns)]
+                   or np.zeros((1, len(record))), axis=0) > SLOWEST
+    found = []
+    for name, columns in {**STREAMS, 'velocity': VELOCITY,
+                          'commands': tuple(record.numbered('cmd'))}.items():
+        for column in columns if record.has(*columns) else ():
+            values = record.columns[column]
+            first, end = _longest_repeat(values)
+            outside = np.delete(values, np.arange(first, end))
+            steps, bends = np.diff(outside), np.diff(outside, 2)
+            bends = np.where(np.abs(bends) > ROUNDING, bends, 0.0)
+            if (record.t[end - 1] - record.t[first] < STUCK or not moves[first:end].mean() > 0.5
+                    or np.count_nonzero(steps) <= UNSTEADY * len(outside)
+                    or np.sum(bends[1:] * bends[:-1] < 0) <= BENDING * len(outside)
+                    or name == 'commands' and values[first] in (values.min(), values.max())):
+                continue
+            held = (np.arange(len(record)) > first) & (np.arange(len(record)) < end)
+            found.append(Finding(
+                'stuck', 'error' if held.mean() > LEFT else 'warning',
+                f'{column}, t = {record.t[first]:.3f} s',
+                f'the {name} stays at {values[first]:g} for '
+                f'{record.t[end - 1] - record.t[first]:.2f} s, while the vehicle moves',
+                without(record.t, held, f'see why {column} was not logged')))
+            break
+    return found
+
+
+def _longest_repeat(values: np.ndarray) -> tuple[int, int]:
+    """Return where the longest run of equal values begins, and where it ends, that excluded."""
+    edges = np.flatnonzero(np.concatenate([[True], np.diff(values) != 0, [True]]))
+    longest = int(np.argmax(np.diff(edges)))
+    return int(edges[longest]), int(edges[longest + 1])
 
 
 def _held(step: np.ndarray) -> tuple[float, int, int, int, np.ndarray]:

@@ -16,7 +16,7 @@ RPM = 2 * np.pi / 60
 SURE = 0.7      # correlation from which on a slope is taken seriously
 NEAR = 1.35     # a slope is a unit's where it is within this factor
 CERTAIN = 0.9   # correlation from which on a slope that is no unit's is an error
-OFF = 2.0       # no gyro and no estimate is off by that factor
+OFF = 1.5       # no gyro and no estimate is off by that factor
 MOVED = 1e-3    # rad/s or m/s rms: less is rounding
 
 

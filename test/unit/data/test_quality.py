@@ -172,12 +172,40 @@ def test_streams_that_end_before_the_record_does_are_found(names, share, severit
     assert all('--to' in one.remedy for one in found)
 
 
+@pytest.mark.parametrize('names', [P, V, Q, W, A, ['cmd1', 'cmd2', 'cmd3', 'cmd4'], ['vz'],
+                                   ['wz'], ['cmd2']])
+@pytest.mark.parametrize('begins', [False, True])
+def test_measured_values_that_stay_exactly_as_they_are_are_found(names, begins):
+    record, rng = flight(), np.random.default_rng(0)
+    record = changed(record, **{name: record.columns[name] + rng.normal(0.0, 2.0, len(record))
+                                for name in ('cmd1', 'cmd2', 'cmd3', 'cmd4')})
+    index, half = np.arange(len(record)), len(record) // 2
+    index = np.maximum(index, half) if begins else np.minimum(index, half)
+    held = changed(record, **{name: record.columns[name][index] for name in names})
+    [finding] = [one for one in findings(held, VEHICLE) if one.code == 'stuck']
+    assert finding.severity == 'error' and finding.where.startswith(names[0])
+    assert ('--from' if begins else '--to') in finding.remedy
+
+
+def test_commands_may_stay_at_their_limit():
+    record = flight()
+    high = np.full(200, record.columns['cmd1'].max() + 50.0)
+    values = np.concatenate([record.columns['cmd1'][:-200], high])
+    assert 'stuck' not in codes(changed(record, cmd1=values), VEHICLE)
+
+
+@pytest.mark.parametrize('factor', [1.8, 2.0])
+def test_a_time_that_counts_too_fast_is_found(factor):
+    record = flight()
+    assert 'scale' in codes(FlightRecord(factor * record.t, record.columns), VEHICLE)
+
+
 def test_a_vehicle_that_stands_at_the_end_is_none_of_these():
     record = flight()
     rest = np.arange(len(record)) < len(record) // 2
     still = ended(record, 0.5, P + V + Q + W)
     still = changed(still, **{name: still.columns[name] * rest for name in V + W})
-    assert 'ended' not in codes(still, VEHICLE)
+    assert not {'ended', 'stuck'} & set(codes(still, VEHICLE))
 
 
 def test_jumps_of_the_attitude_are_found_and_counted():
