@@ -14,6 +14,7 @@ ROUNDING = 1e-9  # m, rad/s, m/s^2: a step that is no motion
 SLOWEST = 0.05   # m/s, rad/s: what is slower may stand, with sensors that have errors
 ENDED = 0.1      # s at the end of a record, at least: samples of a slow stream stay as long
 STUCK = 0.3      # s: a stream of a GPS may repeat its samples for as long
+LIMIT = 0.05     # of the other values, at most, beyond a limit: those of motors that are off
 LEFT = 0.1       # of a record without a stream, beyond which a fit would follow what is missing
 UNSTEADY = 0.5   # of the steps of a column, at least, that are none of its repeats
 BENDING = 0.2    # of its bends, at least, that one back follows: three quarters of white noise's
@@ -70,7 +71,7 @@ def stuck(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     Find columns with noise that stay exactly as they are for a while in which the vehicle moves.
 
     Measured values never repeat for long by chance, whether a jump ends the repeats or not. A
-    command may stay at either end of its range.
+    command may stay at idle or at a limit, which the others hardly pass.
     """
     moves = np.max([np.linalg.norm(record.stack(*columns), axis=1)
                     for columns in (VELOCITY, STREAMS['rate']) if record.has(*columns)]
@@ -82,12 +83,13 @@ def stuck(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
             values = record.columns[column]
             first, end = _longest_repeat(values)
             outside = np.delete(values, np.arange(first, end))
+            low, high = np.quantile(outside, [LIMIT, 1.0 - LIMIT]) if len(outside) else (0.0, 0.0)
             steps, bends = np.diff(outside), np.diff(outside, 2)
             bends = np.where(np.abs(bends) > ROUNDING, bends, 0.0)
             if (record.t[end - 1] - record.t[first] < STUCK or not moves[first:end].mean() > 0.5
                     or np.count_nonzero(steps) <= UNSTEADY * len(outside)
                     or np.sum(bends[1:] * bends[:-1] < 0) <= BENDING * len(outside)
-                    or name == 'commands' and values[first] in (values.min(), values.max())):
+                    or name == 'commands' and not low < values[first] < high):
                 continue
             held = (np.arange(len(record)) > first) & (np.arange(len(record)) < end)
             found.append(Finding(

@@ -187,10 +187,12 @@ def test_measured_values_that_stay_exactly_as_they_are_are_found(names, begins):
     assert ('--from' if begins else '--to') in finding.remedy
 
 
-def test_commands_may_stay_at_their_limit():
-    record = flight()
-    high = np.full(200, record.columns['cmd1'].max() + 50.0)
-    values = np.concatenate([record.columns['cmd1'][:-200], high])
+@pytest.mark.parametrize('level', [-50.0, 50.0])
+def test_commands_may_stay_at_their_limit_or_at_idle(level):
+    record, rng = flight(), np.random.default_rng(0)
+    noisy = record.columns['cmd1'] + rng.normal(0.0, 2.0, len(record))
+    end = noisy.max() if level > 0.0 else noisy.min()
+    values = np.concatenate([[0.0], noisy[1:-200], np.full(200, end + level)])
     assert 'stuck' not in codes(changed(record, cmd1=values), VEHICLE)
 
 
