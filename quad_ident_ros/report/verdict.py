@@ -84,6 +84,9 @@ def next_step(found: Diagnosis) -> str:
                 '"quad_ident export FILE" puts them into your simulator.')
     if _needed(found):
         return _mend_flights(found)
+    if found.not_shown:
+        return ('Next: nothing; the simulation matches these flights, but the effects in the line '
+                '"would not show" may be present.')
     return 'Next: nothing; the simulation matches these flights.'
 
 

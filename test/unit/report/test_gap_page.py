@@ -319,6 +319,11 @@ def test_the_verdict_of_nothing_known_names_no_effect(terminal, found):
     none, _, step, *_ = terminal(verdict=('none',), gap=gap, fly_next=None).splitlines()
     assert none.startswith('verdict: none: the nominal vehicle explains the flights')
     assert 'the simulation matches these flights' in step
+    blind = terminal(verdict=('none',), gap=gap, fly_next=None, not_shown=('wind',)).splitlines()
+    assert '"would not show" may be present' in blind[2]
+    assert any(line.startswith('would not show') and '(wind)' in line for line in blind)
+    seen = terminal(verdict=('none',), gap=gap, fly_next=None, not_shown=())
+    assert 'may be present' not in seen and 'would not show' not in seen
 
 
 def test_a_vehicle_that_needs_a_clock_offset_is_not_said_to_match(terminal, page, found):
