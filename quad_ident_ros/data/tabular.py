@@ -304,6 +304,14 @@ def _seconds(cells: Sequence[str]) -> np.ndarray:
     return np.where(np.isnat(stamps), np.nan, seconds)
 
 
+def _exists(cell: str) -> bool:
+    try:
+        _seconds([cell])
+    except ValueError:
+        return False
+    return True
+
+
 def _minutes(hours: str, minutes: str) -> int:
     """Return the minutes by which a zone is ahead of UTC, from such as +05 and 30."""
     return int(hours) * 60 + int(f'{hours[0]}{minutes}')
@@ -354,7 +362,12 @@ def numbers_in(path: Path, name: str, cells: Sequence[str], comma: bool,
         return np.array(values, float)
     for pattern, made in ((_DATE, _seconds), (_PASSED, _since)):
         if all(pattern.match(cell) for cell in cells if cell):
-            return made(cells)
+            try:
+                return made(cells)
+            except ValueError:      # such as 30 February
+                k = next(k for k, cell in enumerate(cells) if cell and not _exists(cell))
+                raise InputError(f'{path}, {place(k)}, column {name[:40]!r}: {cells[k][:40]!r} is '
+                                 'no date; correct it or leave the cell empty') from None
     if len(wrong) < _FEW * len(values):
         k = wrong[0]
         raise InputError(f'{path}, {place(k)}, column {name[:40]!r}: {cells[k][:40]!r} is not '

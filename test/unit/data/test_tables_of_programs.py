@@ -176,6 +176,15 @@ def test_an_index_of_pandas_is_the_time(tmp_path, stamp, name):
         assert read.info['start_ns'] == np.datetime64('2026-03-01T08:00:00', 'ns').astype(int)
 
 
+def test_a_date_that_does_not_exist_is_named(tmp_path):
+    path = tmp_path / 'february.csv'
+    path.write_text('time,x,y,z\n' + ''.join(
+        f'2026-02-{28 + k // 10} 10:00:{k:02d},0.{k},1,2\n' for k in range(30)))
+    with pytest.raises(InputError, match="line 12, column 'time': '2026-02-29 10:00:10' is no "
+                                         'date; correct it or leave the cell empty'):
+        load(path)
+
+
 def test_an_index_that_counts_rows_is_no_time(tmp_path):
     found = {'': 2.0 * np.arange(len(T)), 'timestamp': T,
              **columns('', 'xyz', PLACE), **named(Q, FLIGHT.stack(*Q))}
