@@ -168,9 +168,10 @@ def _attitude(path: Path, table: Table, mapping: Mapping
 def from_euler(roll: np.ndarray, pitch: np.ndarray, yaw: np.ndarray) -> np.ndarray:
     """Return the quaternions (N, 4) of roll, pitch, yaw (N,) rad, turned in the order zyx."""
     zero = np.zeros_like(roll)
-    turns = [np.stack([np.cos(angle / 2), *(np.sin(angle / 2) if k == axis else zero
-                                            for k in range(3))], axis=-1)
-             for axis, angle in enumerate((roll, pitch, yaw))]
+    with np.errstate(invalid='ignore'):     # of infinite angles, which are no attitude
+        turns = [np.stack([np.cos(angle / 2), *(np.sin(angle / 2) if k == axis else zero
+                                                for k in range(3))], axis=-1)
+                 for axis, angle in enumerate((roll, pitch, yaw))]
     return product(product(turns[2], turns[1]), turns[0])
 
 

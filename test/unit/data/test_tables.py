@@ -355,6 +355,15 @@ def test_axes_that_are_counted_are_known_unless_there_is_a_fourth(tmp_path):
     assert not load(table(tmp_path, columns)).has('wx')
 
 
+@pytest.mark.filterwarnings('error')
+def test_an_infinite_angle_is_bridged_without_a_warning_of_numpy(tmp_path):
+    columns = {'time': FLIGHT.t, **named(PLACE, FLIGHT.stack(*PLACE)),
+               **{name: np.zeros(len(FLIGHT)) for name in ('roll', 'pitch', 'yaw')}}
+    columns['roll'][3] = np.inf
+    read = load(table(tmp_path, columns))
+    np.testing.assert_allclose(read.columns['qw'], 1.0)     # from its neighbours
+
+
 def test_text_in_a_parquet_file_is_named(tmp_path):
     """As in a table of text: a cell that is not a number, and a column without numbers."""
     pyarrow = pytest.importorskip('pyarrow', reason='pyarrow is not installed')
