@@ -18,6 +18,7 @@ LIMIT = 0.05     # of the other values, at most, beyond a limit: those of motors
 LEFT = 0.1       # of a record without a stream, beyond which a fit would follow what is missing
 UNSTEADY = 0.5   # of the steps of a column, at least, that are none of its repeats
 BENDING = 0.2    # of its bends, at least, that one back follows: three quarters of white noise's
+COARSE = 2.5     # of the smallest step, at least, of a bend that counts: rounding makes two
 VELOCITY = 'vx', 'vy', 'vz'
 STREAMS = {'position': ('px', 'py', 'pz'), 'attitude': ('qw', 'qx', 'qy', 'qz'),
            'rate': ('wx', 'wy', 'wz'), 'specific force': ('ax', 'ay', 'az')}
@@ -70,8 +71,9 @@ def stuck(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """
     Find columns with noise that stay exactly as they are for a while in which the vehicle moves.
 
-    Measured values never repeat for long by chance, whether a jump ends the repeats or not. A
-    command may stay at idle or at a limit, which the others hardly pass.
+    Measured values never repeat for long by chance, whether a jump ends the repeats or not, but
+    where they are rounded to more than their noise. A command may stay at idle or at a limit,
+    which the others hardly pass.
     """
     moves = np.max([np.linalg.norm(record.stack(*columns), axis=1)
                     for columns in (VELOCITY, STREAMS['rate']) if record.has(*columns)]
@@ -85,11 +87,14 @@ def stuck(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
             outside = np.delete(values, np.arange(first, end))
             low, high = np.quantile(outside, [LIMIT, 1.0 - LIMIT]) if len(outside) else (0.0, 0.0)
             steps, bends = np.diff(outside), np.diff(outside, 2)
-            bends = np.where(np.abs(bends) > ROUNDING, bends, 0.0)
+            digit = np.min(np.abs(steps[steps != 0]), initial=np.inf)
+            bends = np.where(np.abs(bends) > max(ROUNDING, COARSE * digit), bends, 0.0)
             if (record.t[end - 1] - record.t[first] < STUCK or not moves[first:end].mean() > 0.5
                     or np.count_nonzero(steps) <= UNSTEADY * len(outside)
                     or np.sum(bends[1:] * bends[:-1] < 0) <= BENDING * len(outside)
-                    or name == 'commands' and not low < values[first] < high):
+                    or name == 'commands' and not low < values[first] < high
+                    # A part of a quaternion near 1 hardly changes with the attitude.
+                    or name == 'attitude' and np.ptp(record.stack(*columns)[first:end], 0).any()):
                 continue
             held = (np.arange(len(record)) > first) & (np.arange(len(record)) < end)
             found.append(Finding(

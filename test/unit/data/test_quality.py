@@ -15,7 +15,7 @@ from quad_ident_ros.data.quality.excitation import excitation
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.experiment import fly, load_experiment
 from quad_ident_ros.flight.fly import fly_closed_loop
-from quad_ident_ros.flight.measure import FAULTY, MOCAP_IMU
+from quad_ident_ros.flight.measure import FAULTY, MOCAP_IMU, SENSORS
 from quad_ident_ros.model.attitude import conjugate, euler_from_quaternion, product, rotate
 from quad_ident_ros.model.vehicle import load_vehicle
 
@@ -185,6 +185,17 @@ def test_measured_values_that_stay_exactly_as_they_are_are_found(names, begins):
     [finding] = [one for one in findings(held, VEHICLE) if one.code == 'stuck']
     assert finding.severity == 'error' and finding.where.startswith(names[0])
     assert ('--from' if begins else '--to') in finding.remedy
+
+
+@pytest.mark.parametrize('digits', [2, 3, 4])
+@pytest.mark.parametrize('trajectory', ['circle', 'figure8', 'chirp_x', 'low_passes'])
+def test_values_that_repeat_as_they_are_rounded_are_none_of_these(trajectory, digits):
+    """A log of few digits holds a height, or an attitude, for as long as that moves by less."""
+    record = fly_closed_loop(VEHICLE, {}, trajectory, duration=16.0, seed=5,
+                             noise=SENSORS['mocap_imu'])
+    rounded = changed(record, **{name: np.round(values, digits)
+                                 for name, values in record.columns.items()})
+    assert not {'stuck', 'ended'} & set(codes(rounded, VEHICLE))
 
 
 @pytest.mark.parametrize('level', [-50.0, 50.0])
