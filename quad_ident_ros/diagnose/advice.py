@@ -91,7 +91,7 @@ def one_finding(verdict: Verdict, flights: Sequence[Flight]) -> tuple[dict, ...]
 
     effects: names that the flights do not separate. Thrust and mass are separated by
     the moments, so not where the inertia is found to differ, too. A lag and a delay are not
-    separated where both are over before the next sample.
+    separated where both are over before the next sample, nor from a gyro that is as late.
     """
     rows, named = [], [name for name in verdict.names if name in EFFECTS]
     # The moments separate thrust from mass, but not where the inertia is off, too.
@@ -107,6 +107,7 @@ def one_finding(verdict: Verdict, flights: Sequence[Flight]) -> tuple[dict, ...]
     faster = f', or a log of {RATE:.0f} Hz and more' if slow else ''
     tells = f'measured rotor speeds{faster}: it is over before the next sample that is compared'
     rows += [{'effect': name, 'effects': late, 'tells': tells,
-              'may_be': [[EFFECTS[other].title for other in late if other != name]]}
+              'may_be': [[*(EFFECTS[other].title for other in late if other != name),
+                          'low pass of the gyro']]}
              for name in verdict.brief]
     return tuple(rows)

@@ -250,9 +250,14 @@ def _weighed(error: np.ndarray, scale: np.ndarray, white: Whitening | None) -> n
 
 def _cost(raws: Iterable[np.ndarray], scales: Iterable[np.ndarray],
           whites: Iterable[Whitening | None]) -> float:
-    """Return the sum of squares of errors over their noise, made white."""
-    return sum(float(np.sum(_weighed(raw, scale, white) ** 2))
-               for raw, scale, white in zip(raws, scales, whites, strict=True))
+    """
+    Return the sum of squares of errors over their noise, made white.
+
+    Infinite where predictions of a step that is too large come to nothing; no such step is taken.
+    """
+    with np.errstate(over='ignore'):
+        return sum(float(np.sum(_weighed(raw, scale, white) ** 2))
+                   for raw, scale, white in zip(raws, scales, whites, strict=True))
 
 
 def _quiet(raws: Iterable[np.ndarray], scales: Iterable[np.ndarray],

@@ -31,7 +31,7 @@ def test_a_lag_and_a_delay_that_are_over_before_the_next_sample_are_one_finding(
     [row] = found.one_finding
     assert row['effect'] == found.verdict[0] and set(row['effects']) == LATE
     [line] = one_finding_lines(found)
-    assert 'measured rotor speeds' in line
+    assert 'measured rotor speeds' in line and 'low pass of the gyro' in line
 
 
 @pytest.mark.slow
