@@ -140,12 +140,12 @@ def run(options):
                          simulator=simulator, controller=controller,
                          on_progress=lambda share: bar.update(task, completed=share))
     if options.json != '-':
-        show(found, sys.stdout, options.detail)
+        show(found, sys.stdout, options.detail, options.out_vehicle)
     if options.json:
         write_json(options.json, found.as_data())
     if options.report:
         from quad_ident_ros.report import gap_page  # it draws: half a second to import
-        gap_page.write(options.report, replace(found, run=_run_of(options)))
+        gap_page.write(options.report, replace(found, run=_run_of(options)), options.out_vehicle)
     if options.out_vehicle:
         made = found.corrected(vehicle)
         if options.residual and found.residual is not None:
