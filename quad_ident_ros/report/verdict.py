@@ -120,7 +120,7 @@ def values_of(row: Ranked) -> str:
 
 def change_of(parameter: Value) -> str:
     """Return by how much a parameter exceeds its value in the vehicle file, where it has one."""
-    return '' if parameter.change is None else f' ({parameter.change:+.3g} to the file)'
+    return '' if parameter.change is None else f' ({parameter.change:+.3g} against the file)'
 
 
 def contribution_of(row: Ranked) -> str:

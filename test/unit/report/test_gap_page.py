@@ -308,7 +308,7 @@ def test_each_of_several_effects_is_told_with_its_size(terminal, found):
     verdict, size, *_ = terminal(verdict=(first.effect, second.effect),
                                  ranking=(first, second)).splitlines()
     assert verdict.startswith('verdict: 2 effects explain ')
-    assert verdict.endswith(f' ({second.effect}), x 2 ± 0.1 m/s (+0.5 to the file), '
+    assert verdict.endswith(f' ({second.effect}), x 2 ± 0.1 m/s (+0.5 against the file), '
                             'contribution 20 %')
     assert size.startswith('With these effects, ')
 
