@@ -105,8 +105,8 @@ def _map_in_numbers(found: Diagnosis) -> Markup:
     names = regimes(pictures.wrench_before)
     return details('The map in numbers', join(table(
         head, map_rows(flights, names, found.vehicle),
-        caption=f'Velocity that the force and moment not explained {stage} cause in half a '
-                'second, by channel and regime')
+        caption='Velocity that the unexplained force and moment cause in half a second, '
+                f'{stage} the diagnosis, by channel and regime')
         for stage, flights in (('before', pictures.wrench_before),
                                ('after', pictures.wrench_after))))
 

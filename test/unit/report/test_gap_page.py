@@ -467,7 +467,8 @@ def test_the_page_has_each_cell_of_the_map_as_text_with_channel_regime_and_unit(
     text = page()
     pictures = found.pictures
     for stage, flights in (('before', pictures.wrench_before), ('after', pictures.wrench_after)):
-        caption = f'<caption>Velocity that the force and moment not explained {stage} cause'
+        caption = ('<caption>Velocity that the unexplained force and moment cause in half a '
+                   f'second, {stage} the diagnosis')
         content = text[text.index(caption):].partition('</table>')[0]
         assert re.findall(r'<th scope="col"[^>]*>([^<]*)</th>', content) == [
             'regime, third', *(f'{name}, m/s' for name in CHANNELS)]

@@ -234,7 +234,7 @@ def test_a_screen_reader_gets_every_cell_of_the_map(shown):
     page, _ = shown
     page.get_by_text('The map in numbers').click()
     for stage in ('before', 'after'):
-        cells = page.get_by_role('table', name=f'not explained {stage} cause')
+        cells = page.get_by_role('table', name=f'in half a second, {stage} the diagnosis')
         assert cells.get_by_role('columnheader').all_inner_texts() == [
             'regime, third', *(f'{name}, m/s' for name in ('Fx', 'Fy', 'Fz', 'Mx', 'My', 'Mz'))]
         rows = cells.get_by_role('rowheader').all_inner_texts()
