@@ -43,8 +43,8 @@ def add(commands, summary):
         'diagnose', help=summary,
         formatter_class=argparse.RawDescriptionHelpFormatter,
         description='Compare flights of a real vehicle with its nominal description. The last '
-                    'flight named is held\nout: the effects are not fitted to it. Contributions '
-                    'are judged on all flights, and the gap\nis measured on this one.',
+                    'flight named is held\nout: no effect is fitted to it, and the gap is '
+                    'measured on it. Contributions are judged on all\nflights.',
         epilog='effects:\n'
                + ''.join(f'  {effect.name}: {effect.title}\n' for effect in EFFECTS.values())
                + '\n'
@@ -65,9 +65,9 @@ def add(commands, summary):
     parser.add_argument('flights', nargs='+', metavar='FLIGHT',
                         help='a table (CSV, Parquet), a bag (ROS 1 or 2), or a log of PX4, '
                              'ArduPilot, Crazyflie or Betaflight')
-    parser.add_argument('--vehicle', help='vehicle name or file: the nominal one, which '
-                        'is needed, with the effects that your simulator has; auto: the file '
-                        'beside a PX4 log, written from its parameters')
+    parser.add_argument('--vehicle', help='required: the nominal vehicle, a name or a file, with '
+                        'the effects that your simulator already has; auto: the file beside a '
+                        'PX4 log, written from its parameters')
     parser.add_argument('--hold-out', metavar='FLIGHT',
                         help='the flight on which the gap is measured (default: the last '
                         'one named)')
@@ -140,12 +140,12 @@ def run(options):
                          simulator=simulator, controller=controller,
                          on_progress=lambda share: bar.update(task, completed=share))
     if options.json != '-':
-        show(found, sys.stdout, options.detail)
+        show(found, sys.stdout, options.detail, options.out_vehicle)
     if options.json:
         write_json(options.json, found.as_data())
     if options.report:
         from quad_ident_ros.report import gap_page  # it draws: half a second to import
-        gap_page.write(options.report, replace(found, run=_run_of(options)))
+        gap_page.write(options.report, replace(found, run=_run_of(options)), options.out_vehicle)
     if options.out_vehicle:
         made = found.corrected(vehicle)
         if options.residual and found.residual is not None:

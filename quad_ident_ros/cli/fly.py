@@ -45,7 +45,7 @@ def add(commands, summary):
           '  quad_ident fly figure8 --vehicle paper_quadrotor -o nominal.csv\n'
           '  quad_ident fly lissajous --vehicle paper_quadrotor --noise mocap_imu --seed 3 \\\n'
           '      --effect rotor_drag:coefficient=0.1 --effect wind:x=2 -o drag.csv.gz\n\n'
-          'The very first flight takes up to a minute, in which the model is compiled.')
+          'The first flight compiles the model, which takes a minute or more, only once.')
     parser.add_argument('trajectory', help='name of a trajectory, see below')
     parser.add_argument('--vehicle', required=True, metavar='V',
                         help='name of a shipped vehicle, or a file of a kind that `quad_ident '

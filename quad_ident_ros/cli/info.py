@@ -51,7 +51,7 @@ def add(commands, summary):
                'Without --vehicle, saturation and rotors are not checked. docs/records.md '
                'explains the findings.\n\n'
                'exit code: 0; 2 for a file that cannot be read; 3 where a finding is an error, as '
-               'where a file\nis no flight record without a mapping.')
+               'where a file\nis not a flight record without a mapping.')
     parser.add_argument('flight', metavar='FILE', help='a flight record, a log, a bag or a table')
     parser.add_argument('--vehicle', help='vehicle name or file; auto: the file beside a PX4 log')
     parser.add_argument('--mapping', metavar='FILE', help='which topics and outputs of other '

@@ -36,16 +36,16 @@ def noise_from(entries):
 def add_selection(parser: argparse.ArgumentParser) -> None:
     """Add the options that say which part of each flight is taken."""
     group = parser.add_argument_group(
-        'part of a flight', 'in s by the t that `quad_ident info` prints; they hold for each '
-        'flight named. For one\nof several, write that part as a record first: quad_ident '
-        'convert IN OUT --from 3.2 --to 18.4')
+        'part of a flight', 'times t in s, as `quad_ident info` prints them, for all flights '
+        'named. For one of\nseveral flights, write the part as a record first: quad_ident convert '
+        'IN OUT --from 3.2 --to 18.4')
     group.add_argument('--from', dest='begin', type=float, metavar='SECONDS',
                        help='first time that is used (default: the beginning)')
     group.add_argument('--to', dest='end', type=float, metavar='SECONDS',
                        help='last time that is used (default: the end)')
     group.add_argument('--segment', type=int, metavar='N',
-                       help='of a file that holds several flights or pieces of one, the one of '
-                            'this number in the list of `quad_ident info`')
+                       help='number of a flight, or of a piece of one, in the list that '
+                            '`quad_ident info` prints of a file with several')
 
 
 def selection_of(options: argparse.Namespace) -> Selection:

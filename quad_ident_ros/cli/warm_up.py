@@ -2,6 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """`quad_ident warm-up`: compile the inner loops, so that the first real start need not."""
 
+import time
+
+from quad_ident_ros.report.screen import progress_bar
 from quad_ident_ros.warm_up import warm_up, warm_up_diagnosis
 
 
@@ -12,6 +15,11 @@ def add(commands, summary):
 
 
 def run(options):
-    """Compile what is not compiled yet."""
-    warm_up()
-    warm_up_diagnosis()
+    """Compile what is not compiled yet, and say when that is done."""
+    began = time.monotonic()
+    with progress_bar() as bar:
+        task = bar.add_task('a small identification', total=1.0)
+        warm_up()
+        bar.update(task, description='a small diagnosis', completed=0.5)
+        warm_up_diagnosis()
+    print(f'everything is compiled, after {time.monotonic() - began:.0f} s')

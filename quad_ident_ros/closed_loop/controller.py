@@ -78,5 +78,8 @@ class NamedController:
 
 def controller_of(spec: str, vehicle: Vehicle) -> NamedController:
     """Return the controller that --controller names: `ours`, or FILE.py:NAME; InputError."""
+    if spec != OURS and ':' not in spec:
+        raise InputError(f'--controller {spec}: expected FILE.py:NAME, a class in a Python file, '
+                         f'or {OURS}')
     return NamedController(spec, Tracking(vehicle) if spec == OURS
                            else UserController(spec, vehicle))

@@ -64,8 +64,7 @@ def selected(path: object, records: Sequence[FlightRecord],
     chosen = [_without_spoilt(record) for record in chosen]
     kept = [cut for record in chosen if (cut := _between(record, selection)) is not None]
     if not kept:
-        raise InputError(f'{path}: {selection} is asked for, which leaves nothing of '
-                         f'{_spans(chosen)}')
+        raise InputError(f'{path}: {selection} leaves nothing; it has {_spans(chosen)}')
     return kept
 
 
@@ -75,7 +74,7 @@ def segment_of(path: object, records: Sequence[FlightRecord],
     if selection.segment is None:
         return list(records)
     if selection.segment > len(records):
-        raise InputError(f'{path}: {selection} is asked for, and the file has {_spans(records)}')
+        raise InputError(f'{path}: --segment {selection.segment}: the file has {_spans(records)}')
     return [_noted(records[selection.segment - 1],
                    f'segment {selection.segment} of {len(records)}')]
 

@@ -367,7 +367,7 @@ def numbers_in(path: Path, name: str, cells: Sequence[str], comma: bool,
             except ValueError:      # such as 30 February
                 k = next(k for k, cell in enumerate(cells) if cell and not _exists(cell))
                 raise InputError(f'{path}, {place(k)}, column {name[:40]!r}: {cells[k][:40]!r} is '
-                                 'no date; correct it or leave the cell empty') from None
+                                 'not a date; correct it or leave the cell empty') from None
     if len(wrong) < _FEW * len(values):
         k = wrong[0]
         raise InputError(f'{path}, {place(k)}, column {name[:40]!r}: {cells[k][:40]!r} is not '

@@ -51,7 +51,7 @@ def run_gap_demo(options, on_progress):
     experiment = load_experiment(options.experiment)
     if experiment.model != CLOSED_LOOP:
         raise InputError(f'--experiment {options.experiment}: --gap needs flights in closed loop '
-                         f'(model: {CLOSED_LOOP}), which excite what is looked for')
+                         f'(model: {CLOSED_LOOP}), which excite the effects')
     folder = prepared(options.output)
     output = folder.resolve()
     nominal, reality = output / NOMINAL, output / REALITY

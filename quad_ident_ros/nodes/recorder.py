@@ -157,7 +157,7 @@ class Recorder(PackageNode):
         self._report()
         self._statistics.wait_for_all_acked(Duration(seconds=PARTING))
         if problems := self.counts.problems():
-            self.get_logger().warning('ends; of what came: ' + ', '.join(
+            self.get_logger().warning('ends; problems with the messages: ' + ', '.join(
                 f'{count} {name}' for name, count in problems.items()))
         self._inputs.close()
 

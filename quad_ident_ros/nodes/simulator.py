@@ -51,6 +51,8 @@ SPECS = (
       for channel, unit in NOISE_UNITS.items()),
 )
 
+_EFFECTS = '\n'.join(f'  {effect.name}: {effect.title}' for effect in EFFECTS.values())
+
 HELP = f"""simulator: flies an experiment and publishes what a vehicle would.
 
   ros2 run quad_ident_ros simulator --ros-args -p experiment:=small_angle -p real_time_factor:=2.0
@@ -68,7 +70,8 @@ Publishes (reliable; one stamp per sample on all five):
   /clock    rosgraph_msgs/Clock           with publish_clock
 Subscribes: joined_until (std_msgs/UInt64): how far the recorders are, which full speed waits for
 Services: ~/start, ~/stop (std_srvs/Trigger)
-Effects: {', '.join(EFFECTS)}
+Effects:
+{_EFFECTS}
 
 Parameters (--ros-args -p NAME:=VALUE):
 {help_text(SPECS)}"""

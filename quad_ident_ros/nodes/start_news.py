@@ -43,7 +43,7 @@ class StartNews:
                 self._watch = CompilationWatch()
         elif self._told is None and state.seconds > BRIEF:
             logger.info(f'{COMPILING}es its inner loops, which takes one to two minutes once '
-                        'after each change, more on a busy machine; what comes meanwhile is kept')
+                        'after each change, more on a busy machine; messages are kept meanwhile')
             self._told = now
         elif self._told is not None and now - self._told >= NEWS:
             logger.info(f'{COMPILING}ing: {state.ready} of at most {state.all} functions, '

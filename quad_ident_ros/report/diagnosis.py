@@ -63,12 +63,17 @@ NEXT = ('manoeuvre', 'to', 'standard errors now', 'with it', 'size', 'height', '
 """What next_row says of a manoeuvre."""
 
 
-def show(found: Diagnosis, stream: TextIO, detail: str = USUAL) -> None:
-    """Print a Diagnosis to a stream, the verdict first; detail: VERDICT, USUAL or ALL of it."""
+def show(found: Diagnosis, stream: TextIO, detail: str = USUAL,
+         written: str | None = None) -> None:
+    """
+    Print a Diagnosis to a stream, the verdict first.
+
+    detail: VERDICT, USUAL or ALL of it; written: the file of --out-vehicle.
+    """
     screen = console(stream)
     say(screen, f'verdict: {verdict_line(found)}', 'bold')
     say(screen, size_line(found))
-    say(screen, next_step(found))
+    say(screen, next_step(found, written))
     if detail == VERDICT:
         return
     say(screen, '')

@@ -29,7 +29,6 @@ from quad_ident_ros.report.diagnosis import (
     far_line,
     far_rows,
     form_of,
-    improbable_lines,
     IN_SIMULATOR,
     minor_lines,
     NEXT,
@@ -71,20 +70,25 @@ WIDE = 1.96     # standard errors to the ends of a 95 % interval
 KINDS = {'none': 'yes', 'unknown': 'no', 'undetermined': 'part'}
 
 
-def write(path: str | Path, found: Diagnosis) -> None:
-    """Write the page of a Diagnosis; raises InputError where the file cannot be written."""
+def write(path: str | Path, found: Diagnosis, written: str | None = None) -> None:
+    """
+    Write the page of a Diagnosis; raises InputError where the file cannot be written.
+
+    written: the file of --out-vehicle.
+    """
     with tempfile.TemporaryDirectory() as folder:
         pictures = drawings(figures(found), folder)
-    body = [*_verdict(found), *_where(found, pictures), *_which(found), *_far(found, pictures),
-            *_in_simulator(found), *_closed_loop(found), *_open(found), *_provenance(found)]
+    body = [*_verdict(found, written), *_where(found, pictures), *_which(found),
+            *_far(found, pictures), *_in_simulator(found), *_closed_loop(found), *_open(found),
+            *_provenance(found)]
     write_page(path, f'Sim-to-real gap of {found.vehicle.name}', join(body))
 
 
-def _verdict(found: Diagnosis) -> list:
+def _verdict(found: Diagnosis, written: str | None) -> list:
     words = join((tag('span', titled(name),
                       f'tag {KINDS.get(name, "part")}') for name in found.verdict), ' ')
     return [tag('p', sentence(verdict_line(found)), 'lead'),
-            tag('p', size_line(found)), tag('p', next_step(found)),
+            tag('p', size_line(found)), tag('p', next_step(found, written)),
             tag('p', join([tag('strong', 'Verdict: '), words], ''))]
 
 
@@ -101,8 +105,8 @@ def _map_in_numbers(found: Diagnosis) -> Markup:
     names = regimes(pictures.wrench_before)
     return details('The map in numbers', join(table(
         head, map_rows(flights, names, found.vehicle),
-        caption=f'Velocity that the force and moment not explained {stage} cause in half a '
-                'second, by channel and regime')
+        caption='Velocity that the unexplained force and moment cause in half a second, '
+                f'{stage} the diagnosis, by channel and regime')
         for stage, flights in (('before', pictures.wrench_before),
                                ('after', pictures.wrench_after))))
 
@@ -126,7 +130,7 @@ def _which(found: Diagnosis) -> list:
                         caption='Effects of the model that explains the flights best')]
                  if rows else [tag('p', 'No effect is probable.')])
     return [tag('h2', 'Which effects'), *estimates, _probabilities(found),
-            *_listed([*improbable_lines(found), *minor_lines(found), *one_finding_lines(found)])]
+            *_listed([*minor_lines(found), *one_finding_lines(found)])]
 
 
 def _probabilities(found: Diagnosis) -> Markup:

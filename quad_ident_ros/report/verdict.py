@@ -65,8 +65,8 @@ def size_line(found: Diagnosis) -> str:
     return said if above_noise(gap) else f'{said} {sentence(NOTHING_TO_CLOSE)}'
 
 
-def next_step(found: Diagnosis) -> str:
-    """Return what to do with the verdict, as a sentence."""
+def next_step(found: Diagnosis, written: str | None = None) -> str:
+    """Return what to do with the verdict, as a sentence; written: the file of --out-vehicle."""
     if any(one['code'] == 'other_vehicle' for one in found.findings):
         return ('Next: check the vehicle file, which seems to be that of another vehicle, as the '
                 'warning "vehicle file" says, and diagnose again.')
@@ -79,6 +79,9 @@ def next_step(found: Diagnosis) -> str:
     if is_uncertain(found):
         return ('Next: fly again, longer and with more motion, and diagnose all flights: these '
                 'do not show what it is, which may be nothing that has a name here.')
+    if _named(found) and written:
+        return (f'Next: "quad_ident export {written} --to SIMULATOR -o FILE" puts these effects '
+                'into your simulator.')
     if _named(found):
         return ('Next: "--out-vehicle FILE" writes the vehicle with these effects, and '
                 '"quad_ident export FILE" puts them into your simulator.')
@@ -117,7 +120,7 @@ def values_of(row: Ranked) -> str:
 
 def change_of(parameter: Value) -> str:
     """Return by how much a parameter exceeds its value in the vehicle file, where it has one."""
-    return '' if parameter.change is None else f' ({parameter.change:+.3g} to the file)'
+    return '' if parameter.change is None else f' ({parameter.change:+.3g} against the file)'
 
 
 def contribution_of(row: Ranked) -> str:
@@ -126,8 +129,9 @@ def contribution_of(row: Ranked) -> str:
 
 
 def sentence(text: str) -> str:
-    """Return a text with a capital letter and a full stop."""
-    return f'{text[0].upper()}{text[1:]}.'
+    """Return a text with a full stop, and a capital letter unless it begins with a name."""
+    is_word = text.split(maxsplit=1)[0].rstrip(',:;').isalpha()
+    return f'{text[0].upper() if is_word else text[0]}{text[1:]}.'
 
 
 def _named(found: Diagnosis) -> list[Ranked]:

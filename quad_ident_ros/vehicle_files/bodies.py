@@ -111,7 +111,7 @@ def check_body(where: str, body: Body) -> str:
     if not np.isfinite([body.mass, *body.centre, *body.inertia.ravel()]).all():
         raise InputError(f'{where}: mass and inertia must be finite numbers')
     if body.mass < 0.0:
-        raise InputError(f'{where}: a mass of {body.mass:g} kg cannot be; correct it')
+        raise InputError(f'{where}: a mass of {body.mass:g} kg is impossible; correct it')
     moments = np.linalg.eigvalsh(body.inertia)
     if moments[0] < -1e-9 * abs(moments[2]):
         raise InputError(f'{where}: no body has this inertia: about one axis it is '

@@ -135,7 +135,7 @@ def _plugin(element: Element) -> MotorPlugin:
     for tag, value in numbers.items():
         if value < 0.0 or value == 0.0 and tag in ('motorConstant', 'maxRotVelocity',
                                                    'rotorVelocitySlowdownSim'):
-            raise InputError(f'{element.where}: {tag}: {value:g} cannot be; correct it')
+            raise InputError(f'{element.where}: {tag}: {value:g} is impossible; correct it')
     return MotorPlugin(element, texts['jointName'], texts['linkName'],
                        int(element.value('motorNumber', 0.0)), TURNS[direction], numbers)
 

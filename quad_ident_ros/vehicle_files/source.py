@@ -70,10 +70,10 @@ def mark_of(source: Source | None) -> str:
 def one_of(source: Source, known: Mapping[str, Thing], what: str) -> Thing:
     """Return the one thing of a file, or that which is wanted; InputError that names them."""
     if not known:
-        raise InputError(f'{source.path}: no {what} is in it; name a file with one')
+        raise InputError(f'{source.path}: it has no {what}; name a file with one')
     if source.wanted:
         if source.wanted not in known:
-            raise InputError(f'{source.path}: no {what} of the name {source.wanted!r} is in it; '
+            raise InputError(f'{source.path}: it has no {what} named {source.wanted!r}; '
                              f'give one of {", ".join(known)}')
         return known[source.wanted]
     if len(known) > 1:

@@ -18,7 +18,7 @@ WIDE = 100          # columns from which units of K and the fit have room beside
 GAP_ROWS = ('before', 'after', 'noise')
 ROLES = {'recorder': 'joins the topics of the vehicle into records',
          'identifier': 'fits K, a, b to the records',
-         'diagnoser': 'says which effects the vehicle has beside its file'}
+         'diagnoser': 'says which effects the vehicle has and its file has not'}
 MORE_ARGUMENTS = {'diagnoser': ('-p vehicle:=FILE',)}
 
 

@@ -140,8 +140,8 @@ def quaternions(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
         return []
     first = int(np.argmax(off))
     return [Finding('quaternion_length', 'warning', f'qw, qx, qy, qz, t = {record.t[first]:.3f} s',
-                    f'the length of the quaternion is {length[first]:.3g} there, expected 1 '
-                    f'({100 * off.mean():.1f} % of the samples are so)',
+                    f'the length of the quaternion is {length[first]:.3g}, expected 1 '
+                    f'(in {100 * off.mean():.1f} % of the samples it is not)',
                     'divide it by its length, as all commands do, and see what writes it')]
 
 
@@ -154,7 +154,7 @@ def possible(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
             first = int(np.argmax(bad))
             found.append(Finding(
                 'impossible', 'error', f'{name}, t = {record.t[first]:.3f} s',
-                f'{values[first]:.3g} {unit(name)} is not of a flight ({int(bad.sum())} such '
+                f'{values[first]:.3g} {unit(name)} cannot occur in flight ({int(bad.sum())} such '
                 'samples)', without(record.t, bad, f'see what writes {name}')))
     return found
 

@@ -36,7 +36,7 @@ def vehicles(records: Sequence[FlightRecord]) -> list[dict]:
         return []
     said = '; '.join(f'{_named(members)} of {_shown(about)}' for about, members in groups)
     return [as_caution(Finding(
-        'vehicles', 'warning', 'logs', f'they are of {len(groups)} vehicles: {said}',
+        'vehicles', 'warning', 'logs', f'they come from {len(groups)} vehicles: {said}',
         'diagnose the flights of one vehicle at a time'), groups[1][1][0])]
 
 
@@ -56,7 +56,7 @@ def days(records: Sequence[FlightRecord]) -> list[dict]:
         return []
     said = '; '.join(f'{_named(groups[day])} of {day}' for day in sorted(groups))
     return [as_caution(Finding(
-        'days', 'info', 'logs', f'they are of {len(groups)} days (UTC): {said}',
+        'days', 'info', 'logs', f'they come from {len(groups)} days (UTC): {said}',
         'thrust and wind are estimated for each flight; where the vehicle was changed between '
         'the days, diagnose one day at a time'), groups[max(groups)][0])]
 

@@ -85,9 +85,9 @@ def quaternion(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
         code = {'x, y, z, w': 'quaternion_order', 'world to body': 'quaternion_inverse'}
         return [Finding(
             code.get(name, 'quaternion_order_and_inverse'), 'error', 'qw, qx, qy, qz',
-            f'the attitude turns as the gyro says only where the columns are read as {name}',
+            f'attitude and gyro agree only if the columns are read as {name}',
             'write the quaternion body to world with the scalar first, or name its columns in a '
-            'mapping in their order (q: [...], quaternion: xyzw; unit: "-1" turns a sign)')]
+            'mapping in their order (q: [...], quaternion: xyzw; unit: "-1" reverses a sign)')]
     rate = grid.rate_of(attitude)[grid.good]
     gyro = grid.smooth(grid.signal('wx', 'wy', 'wz'))[grid.good]
     other = correlation(body_vector(rate, 'FRD'), gyro)[0]
@@ -96,9 +96,9 @@ def quaternion(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
                         'attitude and gyro disagree in the sign of y and z: one of them is in '
                         'FRD', 'turn y and z of the one in FRD')]
     return [Finding('frame_sign', 'error', f'w{axis}',
-                    f'the attitude turns the other way about {axis} than the gyro says',
-                    f'turn the sign of w{axis}, or the attitude to FLU; in a mapping of a table '
-                    'unit: -rad/s or -deg turns that of a column')
+                    f'the gyro has the opposite sign to the rotation of the attitude about {axis}',
+                    f'reverse the sign of w{axis}, or turn the attitude to FLU; in a mapping of a '
+                    'table unit: -rad/s or -deg reverses that of a column')
             for axis in _opposed(rate, gyro)]
 
 
@@ -116,10 +116,10 @@ def rate_in_world(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding
                      WIDTH / grid.period):
         return []
     return [Finding('rate_in_world', 'error', 'wx, wy, wz',
-                    'the attitude turns as the rate says only where that is turned back by the '
-                    'attitude: it is about the axes of the world, not of the body',
-                    'publish the twist in body axes (base_link), or turn the rates by the inverse '
-                    'of the attitude')]
+                    'attitude and rate agree only if the rate is rotated back by the attitude: it '
+                    'is about the axes of the world, not of the body',
+                    'publish the twist in body axes (base_link), or rotate the rates by the '
+                    'inverse of the attitude')]
 
 
 def _opposed(one: np.ndarray, other: np.ndarray) -> list[str]:
@@ -163,8 +163,9 @@ def _motion(grid: Grid, attitude: np.ndarray) -> list[Finding]:
         speeding, force = speeding[:, :2], force[:, :2]
     sure = correlation(speeding, force)[0]
     turned = [Finding('frame_sign', 'error', f'p{axis}, v{axis}',
-                      f'the velocity along {axis} changes the other way than the tilt and the '
-                      'thrust say', f'turn the sign of p{axis} and v{axis}, or the attitude')
+                      f'tilt and thrust push the vehicle along {axis} against the direction in '
+                      'which its velocity changes',
+                      f'reverse the sign of p{axis} and v{axis}, or turn the attitude')
               for axis in _opposed(speeding, force)]
     if sure > SURE:     # a height below zero is then no more than another origin
         return turned or _heading(speeding, force) if grid.record.has('ax', 'ay', 'az') else []
@@ -179,8 +180,8 @@ def _motion(grid: Grid, attitude: np.ndarray) -> list[Finding]:
     if correlation(swapped, force)[0] < max(SURE, sure + BETTER):
         return turned or _height(grid.record)
     return [Finding('frame_ned', 'error', 'position, velocity',
-                    'the velocity changes as the specific force says only where it is read as '
-                    'NED', 'turn position and velocity into ENU (x east, y north, z up)')]
+                    'velocity and specific force agree only if the velocity is read as NED',
+                    'turn position and velocity into ENU (x east, y north, z up)')]
 
 
 def _heading(speeding: np.ndarray, force: np.ndarray) -> list[Finding]:
@@ -195,9 +196,9 @@ def _heading(speeding: np.ndarray, force: np.ndarray) -> list[Finding]:
         return []
     return [Finding('heading', 'error' if abs(angle) > high else 'warning',
                     'position, velocity, attitude',
-                    'the velocity changes as attitude and thrust say only where the attitude is '
-                    f'turned about z of the world by {np.degrees(angle):.0f} deg: its heading '
-                    'does not count from x of the position',
+                    'velocity and thrust agree only if the attitude is turned about z of the '
+                    f'world by {np.degrees(angle):.0f} deg: its heading is not measured from '
+                    'the x axis of the position',
                     'take position and attitude from one source, or turn the attitude by this')]
 
 
@@ -208,8 +209,8 @@ def _height(record: FlightRecord) -> list[Finding]:
     if height > -0.3:
         return []
     return [Finding('frame_ned', 'warning', 'pz',
-                    f'the height is {height:.2f} m in the middle: below ground, or z is down',
-                    'turn NED into ENU, or count pz from the ground')]
+                    f'the median height is {height:.2f} m: below ground, or z points down',
+                    'turn NED into ENU, or measure pz from the ground')]
 
 
 def signs(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
@@ -220,8 +221,8 @@ def signs(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     moved = grid.derivative(grid.signal('px', 'py', 'pz'))[grid.good]
     velocity = grid.smooth(grid.signal('vx', 'vy', 'vz'))[grid.good]
     return [Finding('frame_sign', 'error', f'p{axis}, v{axis}',
-                    f'the position falls along {axis} where the velocity is above zero: one of '
-                    'them has the other sign', 'turn both into ENU (x east, y north, z up)')
+                    f'the position along {axis} decreases while the velocity is positive: one of '
+                    'them has the wrong sign', 'turn both into ENU (x east, y north, z up)')
             for axis in _opposed(moved, velocity)]
 
 
@@ -243,17 +244,16 @@ def velocity_in_body(record: FlightRecord, vehicle: Vehicle | None) -> list[Find
                              grid.smooth(rotate(conjugate(attitude), velocity))[grid.good],
                              WIDTH / grid.period):
         return [Finding('velocity_in_world', 'error', 'vx, vy, vz',
-                        'the position changes as the velocity says only where that is turned '
-                        'back by the attitude: it was taken for one in body axes and is of the '
-                        'world',
+                        'position and velocity agree only if the velocity is rotated back by the '
+                        'attitude: it was read as one in body axes, and is one in world axes',
                         'publish the twist in body axes (base_link), or say frame: world of the '
                         'velocity in a mapping')]
     if missed < TURNED or turned > 0.1 or turned > 0.25 * missed:
         return _strangers(moved, grid.smooth(velocity)[grid.good])
     return [Finding('velocity_in_body', 'error', 'vx, vy, vz',
-                    'the position changes as the velocity says only where that is turned by the '
-                    'attitude: it is in body axes',
-                    'turn the velocity into the world, or say frame: body of it in a mapping')]
+                    'position and velocity agree only if the velocity is rotated by the attitude: '
+                    'it is in body axes',
+                    'rotate the velocity into the world, or say frame: body of it in a mapping')]
 
 
 def _strangers(moved: np.ndarray, velocity: np.ndarray) -> list[Finding]:
@@ -263,7 +263,7 @@ def _strangers(moved: np.ndarray, velocity: np.ndarray) -> list[Finding]:
     if alike > STRANGE or fast < SLOW:
         return []
     return [Finding('velocity_other', 'warning', 'vx, vy, vz',
-                    'the position does not change as the velocity says (correlation '
+                    'position and velocity do not agree (correlation '
                     f'{alike:.2f}): they belong to different frames, clocks or vehicles',
                     'say frame: world or body of the velocity in a mapping, or leave it out')]
 

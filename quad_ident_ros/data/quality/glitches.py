@@ -59,7 +59,7 @@ def attitude(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     times = 'once' if len(begins) == 1 else f'{len(begins)} times'
     return [Finding(
         'attitude_glitch', 'warning', f'attitude, t = {record.t[begins[0]]:.3f} s',
-        f'{times} the attitude jumps off and back within {LONGEST:g} s, by up to '
+        f'the attitude jumps off and back {times}, within {LONGEST:g} s, by up to '
         f'{np.degrees(size.max()):.1f} deg in {100 * off.mean():.1f} % of the samples, and the '
         'gyro does not show it',
         'fit and diagnosis give them no weight; look for markers that are hidden or taken for '
@@ -86,7 +86,7 @@ def others(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
             times = 'once' if off.sum() == 1 else f'in {off.sum()} samples'
             found.append(Finding(
                 f'{name}_glitch', 'warning', f'{name}, t = {record.t[np.argmax(off)]:.3f} s',
-                f'{times} the {name} jumps off and back, by up to {size[off].max():.2g} {unit}',
+                f'the {name} jumps off and back {times}, by up to {size[off].max():.2g} {unit}',
                 'fit and diagnosis give them no weight; look for messages that are damaged or '
                 'markers that are taken for others'))
     return found

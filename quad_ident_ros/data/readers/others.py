@@ -177,5 +177,5 @@ def _refuse_folder(path: Path) -> None:
     more = ', ...' if len(names) > _SHOWN else ''
     instead = (f'give a file in it ({", ".join(names[:_SHOWN])}{more})' if names else
                'it holds no file')
-    raise InputError(f'{path}: this is a folder, and no bag of ROS 2: it has no metadata.yaml; '
+    raise InputError(f'{path}: this is a folder and not a bag of ROS 2: it has no metadata.yaml; '
                      f'{instead}')

@@ -132,7 +132,7 @@ def test_every_command_that_reads_flights_takes_a_part(jumped, capsys):
              ['diagnose', jumped, '--vehicle', 'iris', '--hold-out', jumped]]
     for call in calls:
         assert main([*map(str, call), '--from', '70']) == 2
-        assert '--from 70 is asked for, which leaves nothing' in capsys.readouterr().err
+        assert '--from 70 leaves nothing' in capsys.readouterr().err
 
 
 def test_the_parts_of_one_recording_are_one_flight_again(jumped):
@@ -167,7 +167,7 @@ def test_flights_of_several_vehicles_are_told_apart():
     assert vehicles([known('a', **one), known('b', **one), known('c')]) == []
     [caution] = vehicles([known('a', **one), known('b', **other), known('c', **one), known('d')])
     assert caution['code'] == 'vehicles' and caution['severity'] == 'warning'
-    assert caution['message'] == ('they are of 2 vehicles: a, c of PX4_FMU_V5 000201; '
+    assert caution['message'] == ('they come from 2 vehicles: a, c of PX4_FMU_V5 000201; '
                                   'b of PX4_FMU_V5 000202')
 
 
@@ -215,7 +215,7 @@ def test_flights_of_several_days_are_told_apart():
     assert days(flights[::2]) == []
     [told] = days(flights)
     assert told['code'] == 'days' and told['severity'] == 'info'
-    assert told['message'] == 'they are of 2 days (UTC): a, c of 2026-05-12; b of 2026-05-13'
+    assert told['message'] == 'they come from 2 days (UTC): a, c of 2026-05-12; b of 2026-05-13'
 
 
 def test_stamps_since_a_start_tell_no_day():

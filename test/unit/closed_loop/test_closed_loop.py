@@ -275,7 +275,7 @@ def test_what_is_wrong_with_a_controller_is_told_at_once_in_one_line(name, said)
 
 
 def test_a_name_that_is_no_class_of_a_file_is_refused():
-    with pytest.raises(InputError, match='--controller mine: expected FILE.py:NAME'):
+    with pytest.raises(InputError, match='--controller mine: expected FILE.py:NAME, .*, or ours'):
         controller_of('mine', BARE)
 
 

@@ -231,7 +231,7 @@ def test_jumps_of_the_attitude_are_found_and_counted():
     jumping = named(Q, product(record.stack(*Q), turn))
     [finding] = findings(changed(record, **jumping), VEHICLE)
     assert finding.code == 'attitude_glitch' and finding.severity == 'warning'
-    assert finding.message.startswith('3 times') and 't = 3.000 s' in finding.where
+    assert 'jumps off and back 3 times' in finding.message and 't = 3.000 s' in finding.where
     assert 4.0 < float(finding.message.split('up to ')[1].split(' deg')[0]) < 6.0
 
 

@@ -180,8 +180,8 @@ def test_a_date_that_does_not_exist_is_named(tmp_path):
     path = tmp_path / 'february.csv'
     path.write_text('time,x,y,z\n' + ''.join(
         f'2026-02-{28 + k // 10} 10:00:{k:02d},0.{k},1,2\n' for k in range(30)))
-    with pytest.raises(InputError, match="line 12, column 'time': '2026-02-29 10:00:10' is no "
-                                         'date; correct it or leave the cell empty'):
+    with pytest.raises(InputError, match="line 12, column 'time': '2026-02-29 10:00:10' is not "
+                                         'a date; correct it or leave the cell empty'):
         load(path)
 
 

@@ -72,7 +72,7 @@ def test_a_file_with_half_the_drag_has_the_other_half_to_gain(flights, tmp_path)
     assert found.gap.before['velocity'] > 3.0 * found.gap.noise['velocity']
     out = io.StringIO()
     show(found, out)
-    assert 'to the file)' in ' '.join(out.getvalue().split())
+    assert 'against the file)' in ' '.join(out.getvalue().split())
     write_vehicle(tmp_path / 'v.yaml', found.corrected(file))
     assert load_vehicle(tmp_path / 'v.yaml').effects == {
         **TRUTH, 'rotor_drag': {'coefficient': drag.value}}

@@ -28,6 +28,7 @@ from quad_ident_ros.report import gap_page
 from quad_ident_ros.report.diagnosis import ALL, caution_lines, show, USUAL, VERDICT
 from quad_ident_ros.report.gap_pictures import _by_third, map_rows, regimes, save_map
 from quad_ident_ros.report.received import diagnosis_from
+from quad_ident_ros.report.verdict import sentence
 
 pytestmark = pytest.mark.slow
 VEHICLE = load_vehicle('hummingbird')
@@ -184,6 +185,23 @@ def test_what_was_estimated_per_flight_and_other_horizons_are_asked_for(terminal
     assert 'clock_offset' in everything and 'clock_offset' not in usual
 
 
+def test_a_vehicle_that_is_written_is_the_one_to_export(found, tmp_path):
+    stream = io.StringIO()
+    show(found, stream, VERDICT, 'like_real.yaml')
+    gap_page.write(tmp_path / 'page.html', found, 'like_real.yaml')
+    said = 'quad_ident export like_real.yaml --to SIMULATOR'
+    assert said in stream.getvalue().splitlines()[2]
+    assert said in (tmp_path / 'page.html').read_text(encoding='utf-8')
+
+
+@pytest.mark.parametrize(('text', 'said'), [
+    ('the ceiling', 'The ceiling.'), ('also: one', 'Also: one.'),
+    ('flight_1 (flight_2 alike): a', 'flight_1 (flight_2 alike): a.'),
+    ('clock_offset (how late), s: 0.01', 'clock_offset (how late), s: 0.01.')])
+def test_a_sentence_leaves_a_name_that_it_begins_with_as_it_is(text, said):
+    assert sentence(text) == said
+
+
 def test_the_verdict_alone_is_three_lines(terminal):
     whole = terminal().splitlines()
     assert terminal(VERDICT).splitlines() == whole[:3]
@@ -238,8 +256,7 @@ def test_each_finding_on_a_flight_is_told_and_equal_ones_of_several_flights_once
 def test_what_remains_open_is_said_on_the_page(page):
     text = page(**OPEN)
     assert '<h2>What remains open</h2>' in text
-    assert [said for said in SAID
-            if f'<li>{escape(f"{said[0].upper()}{said[1:]}.")}' not in text] == []
+    assert [said for said in SAID if f'<li>{escape(sentence(said))}' not in text] == []
 
 
 def test_what_a_diagnosis_says_survives_the_way_over_json(found):
@@ -291,7 +308,7 @@ def test_each_of_several_effects_is_told_with_its_size(terminal, found):
     verdict, size, *_ = terminal(verdict=(first.effect, second.effect),
                                  ranking=(first, second)).splitlines()
     assert verdict.startswith('verdict: 2 effects explain ')
-    assert verdict.endswith(f' ({second.effect}), x 2 ± 0.1 m/s (+0.5 to the file), '
+    assert verdict.endswith(f' ({second.effect}), x 2 ± 0.1 m/s (+0.5 against the file), '
                             'contribution 20 %')
     assert size.startswith('With these effects, ')
 
@@ -450,7 +467,8 @@ def test_the_page_has_each_cell_of_the_map_as_text_with_channel_regime_and_unit(
     text = page()
     pictures = found.pictures
     for stage, flights in (('before', pictures.wrench_before), ('after', pictures.wrench_after)):
-        caption = f'<caption>Velocity that the force and moment not explained {stage} cause'
+        caption = ('<caption>Velocity that the unexplained force and moment cause in half a '
+                   f'second, {stage} the diagnosis')
         content = text[text.index(caption):].partition('</table>')[0]
         assert re.findall(r'<th scope="col"[^>]*>([^<]*)</th>', content) == [
             'regime, third', *(f'{name}, m/s' for name in CHANNELS)]

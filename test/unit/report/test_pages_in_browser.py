@@ -84,6 +84,19 @@ def test_a_wide_table_is_reached_and_scrolled_by_keys(browser, path):
         page.wait_for_function('document.activeElement.scrollLeft > 0')
 
 
+def test_the_effects_fit_a_desk_with_the_longest_title(browser, gap):
+    """Their intervals were cut, and had to be scrolled to."""
+    with opened(browser, gap) as (page, *_):
+        [cut] = page.evaluate("""() => [...document.querySelectorAll('.dense')]
+            .filter(one => one.caption.textContent.startsWith('Effects'))
+            .map(one => { const row = one.tBodies[0].rows[0], around = one.parentElement;
+              row.cells[0].textContent = 'tilt of the measured attitude (attitude_misalignment)';
+              row.cells[5].textContent = 'thrust_coefficient';
+              row.cells[7].textContent = '-0.005089 to -0.001169';
+              return around.scrollWidth - around.clientWidth; })""")
+        assert cut <= 0
+
+
 FIELDS = '.field'
 PICTURES = "() => [...document.querySelectorAll('.live canvas')].map(one => one.toDataURL())"
 
@@ -221,7 +234,7 @@ def test_a_screen_reader_gets_every_cell_of_the_map(shown):
     page, _ = shown
     page.get_by_text('The map in numbers').click()
     for stage in ('before', 'after'):
-        cells = page.get_by_role('table', name=f'not explained {stage} cause')
+        cells = page.get_by_role('table', name=f'in half a second, {stage} the diagnosis')
         assert cells.get_by_role('columnheader').all_inner_texts() == [
             'regime, third', *(f'{name}, m/s' for name in ('Fx', 'Fy', 'Fz', 'Mx', 'My', 'Mz'))]
         rows = cells.get_by_role('rowheader').all_inner_texts()

@@ -68,6 +68,12 @@ def test_a_fit():
     assert 'undetermined; this if body_drag.horizontal is 0.1' in table
 
 
+def test_what_the_simulator_node_flies():
+    pytest.importorskip('rclpy', reason='ROS 2 is not here')
+    from quad_ident_ros.nodes.simulator import HELP
+    assert all(f'  {effect.name}: {effect.title}\n' in HELP for effect in EFFECTS.values())
+
+
 def test_what_fit_can_free(capsys):
     with pytest.raises(SystemExit):
         main(['fit', '--help'])

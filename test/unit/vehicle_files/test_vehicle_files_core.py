@@ -228,7 +228,7 @@ def test_of_several_vehicles_one_is_named(tmp_path):
     assert 'several vehicles are in it (quad_params, heavy); name one: params.py:quad_p' in said
     path = written(tmp_path, text)
     assert load_any_vehicle(f'{path}:heavy').mass == 2.0
-    with pytest.raises(InputError, match="of the name 'light' is in it; give one of quad_params"):
+    with pytest.raises(InputError, match="named 'light'; give one of quad_params"):
         load_any_vehicle(f'{path}:light')
 
 
