@@ -8,6 +8,8 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.parameter_service import ParameterService
 
+from quad_ident_ros.errors import InputError
+
 LISTS = (Parameter.Type.DOUBLE_ARRAY, Parameter.Type.STRING_ARRAY)
 
 
@@ -17,10 +19,11 @@ class PackageNode(Node):
 
     An empty list has no type: `ros2 param set` sends it as one of truth values. A fixed parameter
     may be set to what it is, so that a node takes its own dump. A value of no type that there is
-    is refused; in a node of rclpy it ends the process.
+    is refused; in a node of rclpy it ends the process. So is a topic that is to have two types.
     """
 
     def __init__(self, name, **kwargs):
+        self._types_by_topic = {'/rosout': 'rcl_interfaces/msg/Log'}    # which rcl publishes
         super().__init__(name, start_parameter_services=False, **kwargs)
         self._parameter_service = _TypedParameterService(self)
 
@@ -42,6 +45,24 @@ class PackageNode(Node):
         """Return {name: value} of all parameters as they are now."""
         return {name: _plain(parameter.value)
                 for name, parameter in self.get_parameters_by_prefix('').items()}
+
+    def create_publisher(self, msg_type, topic, *args, **kwargs):
+        """Return a publisher; raises InputError where this node has the topic as another type."""
+        self._take_topic(topic, msg_type)
+        return super().create_publisher(msg_type, topic, *args, **kwargs)
+
+    def create_subscription(self, msg_type, topic, *args, **kwargs):
+        """Return a subscription; InputError as for a publisher."""
+        self._take_topic(topic, msg_type)
+        return super().create_subscription(msg_type, topic, *args, **kwargs)
+
+    def _take_topic(self, name, msg_type):
+        topic = self.resolve_topic_name(name)
+        kind = f'{msg_type.__module__.partition(".")[0]}/msg/{msg_type.__name__}'
+        before = self._types_by_topic.setdefault(topic, kind)
+        if before != kind:
+            raise TwoTypes(f'{topic} cannot be both {before} and {kind}: a topic has one type; a '
+                           'parameter or a remapping (-r) gives two topics of this node one name')
 
     def set_parameters_atomically(self, parameter_list):
         """Set parameters as Node does, also empty lists and fixed ones that stay the same."""
@@ -68,6 +89,10 @@ class PackageNode(Node):
         now = self.get_parameter(parameter.name)
         return (self.describe_parameter(parameter.name).read_only and now.type_ == parameter.type_
                 and _plain(now.value) == _plain(parameter.value))
+
+
+class TwoTypes(InputError):
+    """A topic that a node is to have as two types, which rcl would refuse with a traceback."""
 
 
 class _TypedParameterService(ParameterService):

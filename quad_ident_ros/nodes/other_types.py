@@ -25,11 +25,11 @@ def other_type(node, name):
 
 
 def one_topic_for_two(node, name, names):
-    """Say that a topic cannot be subscribed to, for another of names has it as another type."""
+    """Say that a topic cannot be subscribed to as two of names, or return '' where it is not."""
     topic = node.resolve_topic_name(name)
     same = [one for one in names if node.resolve_topic_name(one) == topic]
-    if len(same) < 2:   # a node of this process publishes it
-        return other_type(node, name) or f'{name}: {topic} has another type in this process'
+    if len(same) < 2:   # the node publishes it
+        return ''
     both = ' and '.join(f'{one} ({FLIGHT_TOPICS[one].type})' for one in same)
     return (f'{topic} cannot be both {both}: a topic has one type; '
             f'{way_out(topic, "nav_msgs/msg/Odometry")}')

@@ -31,7 +31,7 @@ from quad_ident_ros.nodes import process
 from quad_ident_ros.nodes.health import Health
 from quad_ident_ros.nodes.mapped import message_class
 from quad_ident_ros.nodes.messages import diagnostics_message
-from quad_ident_ros.nodes.node import PackageNode
+from quad_ident_ros.nodes.node import PackageNode, TwoTypes
 from quad_ident_ros.nodes.on_disk import FLUSH_PERIOD, OnDisk
 from quad_ident_ros.nodes.other_types import one_topic_for_two
 from quad_ident_ros.nodes.outlets import outlets_of
@@ -216,10 +216,10 @@ class Recorder(PackageNode):
 
         try:
             self._inputs.add(name, kind, on_message, quality)
-        except RCLError:
+        except TwoTypes as error:
             if self._mapped is not None:
                 raise
-            raise InputError(one_topic_for_two(self, name, self._topics)) from None
+            raise InputError(one_topic_for_two(self, name, self._topics) or str(error)) from None
 
     def _on_message(self, topic, kind, raw):
         now = self._last_message = self._now()

@@ -29,7 +29,7 @@ class Subscriptions:
         return {name: subscription.topic_name for name, subscription in self._all.items()}
 
     def add(self, name, kind, on_message, quality=LOSSLESS):
-        """Subscribe to a topic of messages of a kind; raises RCLError where rcl refuses it."""
+        """Subscribe to a topic of messages of a kind; raises TwoTypes as PackageNode does."""
         refused = 0
 
         def on_incompatible(event):

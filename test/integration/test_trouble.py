@@ -14,6 +14,8 @@ from quad_ident_ros.data.record import QUATERNION
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.experiment import fly, load_experiment
 from quad_ident_ros.model.attitude import conjugate, rotate
+from quad_ident_ros.nodes.diagnoser import Diagnoser
+from quad_ident_ros.nodes.identifier import Identifier
 from quad_ident_ros.nodes.qos import latched, LOSSLESS
 from quad_ident_ros.nodes.recorder import Recorder
 from quad_ident_ros.nodes.simulator import Simulator
@@ -90,6 +92,20 @@ def test_one_topic_cannot_be_pose_and_twist(graph):
     with pytest.raises(InputError, match=r'/odom cannot be both pose \(geometry_msgs/msg/'
                        r'PoseStamped\) and twist .*; start the recorder with .*odometry'):
         graph.start(Recorder, arguments=('-r', 'pose:=/odom', '-r', 'twist:=/odom'))
+
+
+@pytest.mark.parametrize('node, words, topic', [
+    (Simulator, ('-r', 'attitude:=pose'), '/pose'),
+    (Recorder, ('-r', 'run:=attitude'), '/attitude'),
+    (Recorder, ('-r', 'joined_until:=attitude'), '/attitude'),
+    (Identifier, ('-r', 'record:=parameters_json'), '/parameters_json'),
+    (Diagnoser, ('-r', 'diagnosis:=gap'), '/gap'),
+    *((Recorder, ('-p', f'windows:=["{name}=30"]'), f'/{name}') for name in (
+        'run', 'joined_until', 'attitude', 'diagnostics', 'recorder/statistics', 'rosout'))])
+def test_one_topic_of_two_types_is_refused_in_a_line(graph, node, words, topic):
+    with pytest.raises(InputError, match=rf'^{topic} cannot be both \w+/msg/\w+ and \w+/msg/'
+                       r'.*; a parameter or a remapping'):
+        graph.start(node, arguments=words)
 
 
 def test_stamps_that_never_meet_are_told_and_joined_between(graph):
