@@ -10,7 +10,7 @@ import yaml
 
 from quad_ident_ros import resources, schema
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.nodes.parameter_files import is_for, names_in, words_for
+from quad_ident_ros.nodes.parameter_files import given_to, is_for, names_in, words_for
 
 SIMULATOR = 'simulator'
 # Signals by which a node ends that was told to; the last where FastDDS holds it, see process.run.
@@ -111,7 +111,9 @@ def planned(nodes: Sequence[str], arguments: Sequence[Argument], values: Mapping
     if space and simulate:
         given[SIMULATOR]['frame_prefix'] = f'{space}/'
     # Two simulators, each in its namespace, have two times.
-    clock = ('-r', '/clock:=clock') if sim_time and simulate and space else ()
+    clocked = sim_time or bool(path) and given_to(
+        resources.read_yaml(path), SIMULATOR, f'/{space}/{SIMULATOR}').get('publish_clock') is True
+    clock = ('-r', '/clock:=clock') if clocked and simulate and space else ()
     usual = usual if simulate else {}
     # A flight that is simulated ends with its simulator: a new one flies from the beginning.
     respawn = _value(RESPAWN, values) if values.get(RESPAWN.name, '') else not simulate

@@ -7,12 +7,21 @@ import json
 
 def names_in(data):
     """Return the names of nodes, which may have wild cards, in the data of a parameter file."""
-    return list(_names(data, ''))
+    return [key for key, _ in _entries(data, '')]
 
 
 def is_for(keys, name, full_name):
     """Return whether one of the keys of a parameter file is a node's, by its name."""
     return any(_matches(key, name, full_name) for key in keys)
+
+
+def given_to(data, name, full_name):
+    """Return the parameters {name: value} that the data of a file give a node, later ones last."""
+    given = {}
+    for key, parameters in _entries(data, ''):
+        if _matches(key, name, full_name) and isinstance(parameters, dict):
+            given |= parameters
+    return given
 
 
 def words_for(parameters):
@@ -22,13 +31,14 @@ def words_for(parameters):
             for word in ('-p', f'{name}:={json.dumps(value, ensure_ascii=False)}')]
 
 
-def _names(data, prefix):
+def _entries(data, prefix):
+    """Yield the name of each node, and what is below its ros__parameters."""
     for key, value in data.items():
         name = f'{prefix}/{str(key).strip("/")}'
         if isinstance(value, dict) and 'ros__parameters' in value:
-            yield name
+            yield name, value['ros__parameters']
         elif isinstance(value, dict):
-            yield from _names(value, name)
+            yield from _entries(value, name)
 
 
 def _matches(key, name, full_name):

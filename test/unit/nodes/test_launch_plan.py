@@ -80,6 +80,17 @@ def test_simulated_time_has_one_clock_in_each_namespace():
     assert replayed['recorder'] == ['-p', 'use_sim_time:=true']
 
 
+def test_a_parameter_file_that_publishes_the_time_has_one_clock_in_each_namespace(tmp_path):
+    path = tmp_path / 'some.yaml'
+    path.write_text('/**/simulator:\n  ros__parameters:\n    publish_clock: true\n'
+                    '/**:\n  ros__parameters:\n    use_sim_time: false\n')
+    tables = Tables('identify')
+    alone, fleet, others = (tables.plan(params_file=str(path), **more) for more in (
+        {}, {'namespace': '/uav1/'}, {'namespace': 'uav1', 'simulate': 'false'}))
+    assert all(words[-2:] == ['-r', '/clock:=clock'] for words in fleet.values())
+    assert not any('/clock:=clock' in words for words in (*alone.values(), *others.values()))
+
+
 def test_a_parameter_file_goes_to_those_whom_it_names(tmp_path):
     path = tmp_path / 'some.yaml'
     path.write_text('/**/recorder:\n  ros__parameters:\n    window_samples: 30\n')

@@ -10,7 +10,7 @@ from rcl_interfaces.msg import ParameterType
 
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.nodes import diagnoser, identifier, recorder, simulator
-from quad_ident_ros.nodes.parameter_files import is_for, names_in
+from quad_ident_ros.nodes.parameter_files import given_to, is_for, names_in
 from quad_ident_ros.nodes.parameters import help_text, NodeParameters, ParameterSpec, TYPES
 
 SHARE = ParameterSpec('share', 0.5, 'A share.', limits=(0.0, 1.0))
@@ -98,6 +98,15 @@ def test_names_in_a_parameter_file_are_found():
             '/**': {'ros__parameters': {}}, '/**/simulator': {'ros__parameters': {}},
             'no': 'mapping'}
     assert names_in(data) == ['/identifier', '/quad/recorder', '/**', '/**/simulator']
+
+
+def test_what_a_parameter_file_gives_a_node_is_found():
+    data = {'/**': {'ros__parameters': {'seed': 1, 'effects': []}},
+            'quad': {'simulator': {'ros__parameters': {'seed': 2}}},
+            'simulator': {'ros__parameters': {'seed': 3}},
+            '/quad/**': {'ros__parameters': None}}
+    assert given_to(data, 'simulator', '/quad/simulator') == {'seed': 2, 'effects': []}
+    assert given_to(data, 'simulator', '/simulator') == {'seed': 3, 'effects': []}
 
 
 @pytest.mark.parametrize('key, name, matches', [
