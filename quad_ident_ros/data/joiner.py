@@ -6,11 +6,11 @@ from collections import deque
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 import heapq
-import math
 from typing import TypeAlias
 
 # A stamp that goes back by more than this is a clock that restarted, not a late message.
 RESTART_NS = 1_000_000_000
+LARGEST = 1e100     # of a value: what is computed of larger ones is soon no number any more
 REMEMBERED = 2000   # emitted stamps, kept to distinguish a duplicate from a late message
 
 Row: TypeAlias = tuple[int, tuple[float, ...]]
@@ -28,10 +28,10 @@ class Counts:
     received: per topic. joined: rows. dropped: stamps that some topic never delivered. late:
     messages after their row was given up. duplicated: a stamp twice on one topic. out_of_order: a
     stamp older than the one before it on its topic. nan: messages with a value that is no finite
-    number, or an attitude that is none. lost and incompatible_qos: as the middleware reports them.
-    unread: messages that waited when the recorder was told to end, for too long to be joined.
-    restarts: of the clock. missing: samples that the records lack, whatever became of them, by the
-    count that the sender announced or else by the sample period.
+    number or beyond LARGEST, or an attitude that is none. lost and incompatible_qos: as the
+    middleware reports them. unread: messages that waited when the recorder was told to end, for
+    too long to be joined. restarts: of the clock. missing: samples that the records lack, whatever
+    became of them, by the count that the sender announced or else by the sample period.
     """
 
     received: dict[str, int] = field(default_factory=dict)
@@ -56,6 +56,11 @@ class Counts:
         """Return the counts of what went wrong that are not zero."""
         return {name: count for name, count in vars(self).items()
                 if name not in ('received', 'joined') and count}
+
+
+def are_measured(values: Iterable[float]) -> bool:
+    """Return whether values are numbers of a size that measurements can have."""
+    return sum(map(abs, values)) < LARGEST
 
 
 class Joiner:
@@ -104,13 +109,13 @@ class Joiner:
             else:
                 counts.late += 1
             return []
-        finite = all(map(math.isfinite, values))
-        if not finite:
+        measured = are_measured(values)
+        if not measured:
             counts.nan += 1
         if parts is None:
             parts = self._pending[key] = {}
             heapq.heappush(self._keys, key)
-        parts[topic] = values if finite else None
+        parts[topic] = values if measured else None
         return self._ready(self._given_up)
 
     def has_reached(self, stamp_ns: int) -> bool:

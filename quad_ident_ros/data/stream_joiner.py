@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from quad_ident_ros.data.joiner import Counts, RESTART_NS, Row
+from quad_ident_ros.data.joiner import are_measured, Counts, RESTART_NS, Row
 from quad_ident_ros.data.record import EULER, QUATERNION
 from quad_ident_ros.data.streams import HELD, INTERPOLATED, slerp, SLOW
 from quad_ident_ros.model.attitude import continuous
@@ -68,7 +68,7 @@ class StreamJoiner:
             counts.out_of_order += 1
             return []
         self._last[name] = stamp_ns
-        if not all(map(math.isfinite, values.values())):
+        if not are_measured(values.values()):
             counts.nan += 1
             return []
         self.columns.setdefault(name, tuple(values))

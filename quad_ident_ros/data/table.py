@@ -61,7 +61,7 @@ def _info_from(where: str, label: str) -> dict[str, Any]:
         info = None
     if not isinstance(info, dict):
         raise InputError(f'{where}: the label of the third dimension is not a JSON object')
-    for name in ('run_index', 'run_count', 'start_ns'):
+    for name in ('run_index', 'run_count', 'start_ns', 'dropped'):
         if not isinstance(info.get(name, 0), int):
             raise InputError(f'{where}: {name} is not a whole number')
     if not isinstance(info.get('notes', []), list):

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from quad_ident_ros.data.cdr import Reader, stamped_numbers
+from quad_ident_ros.data.joiner import are_measured
 from quad_ident_ros.data.message import Message
 from quad_ident_ros.data.record import ARM, MOMENTS
 from quad_ident_ros.errors import InputError
@@ -80,7 +81,7 @@ EXACT_TOPIC = 'flight_record'
 ARRAY_TYPE = 'std_msgs/msg/Float64MultiArray'
 
 AT_THE_ARM = dict(zip(MOMENTS, ('u2', 'u3'), strict=True))
-LONGEST_ARM = 100.0     # m
+SHORTEST_ARM, LONGEST_ARM = 1e-4, 100.0     # m
 
 # The stamp (ns) up to which a recorder has joined: what lets a simulator run as fast as it keeps
 # up. The middleware's own acknowledgements come every 3 s only.
@@ -103,6 +104,15 @@ def not_unit(quaternion: ArrayLike) -> np.ndarray:
     finite = np.isfinite(q).all(axis=-1)
     length = np.linalg.norm(np.clip(q, -10.0, 10.0), axis=-1)
     return finite & ~((length > 0.5) & (length < 2.0))
+
+
+def unusable(name: str, values: tuple[float, ...]) -> str:
+    """Return why the values of a message of FLIGHT_TOPICS are no measurement, or ''."""
+    if not are_measured(values):
+        return f'{name}: holds a value that is not a number, or infinite, or beyond all measure'
+    if name == 'pose' and not 0.25 < sum(part * part for part in values[3:]) < 4.0:
+        return 'pose: the quaternion does not have length 1; publish a pose with an attitude'
+    return ''
 
 
 def raw_columns(topics: Iterable[str]) -> tuple[str, ...]:
@@ -138,9 +148,9 @@ def record_columns(names: Iterable[str], table: ArrayLike, arm: float | None = N
 def arm_of(info: Mapping[str, Any]) -> float | None:
     """Return the arm length (m) that the info of a run or record says, or None."""
     arm = info.get(ARM)
-    if isinstance(arm, bool) or not isinstance(arm, int | float) or not 0.0 < arm < LONGEST_ARM:
+    if isinstance(arm, bool) or not isinstance(arm, int | float):
         return None
-    return float(arm)
+    return float(arm) if SHORTEST_ARM < arm < LONGEST_ARM else None
 
 
 @dataclass(frozen=True)
@@ -165,7 +175,10 @@ class RunNotice:
             notice = cls(int(data['start_ns']), int(data['stop_ns']), int(data['samples']),
                          dict(data['info']))
             if not (0 <= notice.start_ns <= notice.stop_ns < 2 ** 63
-                    and isinstance(notice.info.get('name', ''), str)):
+                    and 0 <= notice.samples <= notice.stop_ns - notice.start_ns + 1
+                    and isinstance(notice.info.get('name', ''), str)
+                    and all(isinstance(notice.info.get(name, 0), int)
+                            for name in ('run_index', 'run_count'))):
                 raise ValueError
         except (ValueError, KeyError, TypeError, OverflowError, RecursionError):
             raise InputError(f'topic {RUN_TOPIC}: {text[:60]!r} announces no run; expected JSON '

@@ -19,6 +19,7 @@ from quad_ident_ros.nodes.qos import latched
 from quad_ident_ros.nodes.records import Records
 
 NEWS = 10.0     # s between two lines of log on records that are left aside, windows come fast
+LATEST = 2 ** 31 - 1     # s of a stamp of ROS, of 1970: results have that of the last sample
 GETTING_READY = 'getting ready: loads or compiles its inner loops, and keeps records that arrive'
 
 
@@ -90,7 +91,7 @@ class RecordWorker(PackageNode):
         except InputError as error:
             self.get_logger().error(str(error))
             return
-        why = self._unfit(record)
+        why = _beyond_all_time(record) or self._unfit(record)
         if why:
             self.get_logger().warning(why, throttle_duration_sec=NEWS)
             return
@@ -153,3 +154,12 @@ class RecordWorker(PackageNode):
         elif self._job.busy:
             level, text = OK, self._words.doing
         self._diagnostics.publish(diagnostics_message(self, level, text, values))
+
+
+def _beyond_all_time(record):
+    """Return why no stamp can be that of a record, or None."""
+    start = record.info.get('start_ns', 0)
+    if 0 <= start and start * 1e-9 + float(record.t[-1] - record.t[0]) < LATEST:
+        return None
+    return ('topic record: a record is ignored whose time is none that a stamp can have '
+            f'(start_ns, t): from 0 to {LATEST} s')

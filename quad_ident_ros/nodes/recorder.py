@@ -3,6 +3,7 @@
 """Node `recorder`: joins the topics of a flight into records, keeps and publishes them."""
 
 import json
+import math
 import sys
 import time
 
@@ -25,6 +26,7 @@ from quad_ident_ros.data.topics import (
     RUN_TOPIC,
     RunNotice,
     stamp_ns,
+    unusable,
 )
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.nodes import process
@@ -227,10 +229,14 @@ class Recorder(PackageNode):
         if sample is None:
             message = deserialize_message(raw, kind)
             sample = stamp_ns(message), topic.values(message)
+        stamp, values = sample
         self._disk.write(topic.name, raw)
+        if why := unusable(topic.name, values):
+            self._say_unreadable(why)
+            values = (math.nan,) * len(values)
         joiner, counts = self._joiner, self.counts
         restarts, interpolated = counts.restarts, joiner.interpolates
-        rows = joiner.add(topic.name, *sample)
+        rows = joiner.add(topic.name, stamp, values)
         if joiner.interpolates and not interpolated:
             self.get_logger().warning(self._unjoined.between())
         self._keep(rows)

@@ -402,6 +402,19 @@ def test_malformed_records_do_no_harm(bench, hover):
     assert data['methods']['ls']['outputs']['z']['K'] == pytest.approx(1 / 0.65, rel=1e-3)
 
 
+@pytest.mark.parametrize('change', [{'start_ns': 10 ** 30}, {'start_ns': -10 ** 30},
+                                    {'start_ns': (2 ** 31 - 1) * 10 ** 9}])
+def test_a_record_whose_time_no_stamp_can_have_is_left_aside(bench, hover, capfd, change):
+    bench = bench({'method': 'ls', 'mode': 'continuous'})
+    good = flights()[0]
+    bench.feed([FlightRecord(good.t, good.columns, {**good.info, **change, 'run_count': 1})])
+    said = 'a record is ignored whose time is none that a stamp can have'
+    bench.graph.spin_until(lambda: said in capfd.readouterr().err, said)
+    assert not bench.json
+    bench.feed([good])
+    bench.graph.spin_until(lambda: bench.json, 'the result')
+
+
 def test_no_thread_is_left(graph, hover):
     before = threading.active_count()
     bench = Bench(graph, {'method': 'ls'})

@@ -136,6 +136,47 @@ def test_what_is_wrong_is_counted_and_published(graph):
     assert status.name == 'recorder' and '5 nan' in status.message
 
 
+@pytest.mark.parametrize('topic, spoil, said', [
+    ('twist', lambda message: setattr(message.twist.linear, 'x', 1.7e308), 'beyond all measure'),
+    ('altitude', lambda message: setattr(message.point, 'z', math.inf), 'is not a number'),
+    ('pose', lambda message: setattr(message.pose.orientation, 'w', 0.0), 'length 1'),
+    ('pose', lambda message: setattr(message.pose.orientation, 'w', 1e200), 'beyond all measure')])
+def test_what_no_sensor_measures_is_told_and_counted_and_joined_into_nothing(
+        graph, capfd, topic, spoil, said):
+    recorder = graph.start(Recorder)
+    records, statistics = listen(graph)
+    vehicle = Vehicle(graph)
+    for k in range(20):
+        stamp = SECOND + k * PERIOD
+        vehicle.send(stamp, 0.001 * k, [name for name in STREAMS if name != topic])
+        message = sample(topic, stamp, 0.001 * k)
+        if k in (7, 8):
+            spoil(message)
+        vehicle.publishers[topic].publish(message)
+    await_joined(graph, recorder, 18)
+    assert graph.trigger('recorder/flush').success
+    assert problems(await_counts(graph, statistics, joined=18, records=1)) == {
+        'nan': 2, 'missing': 2}
+    graph.spin_until(lambda: records, 'the record')
+    assert len(records.records()[0]) == 18
+    assert f'[recorder]: {topic}: ' in (err := capfd.readouterr().err) and said in err
+
+
+def test_an_arm_by_which_moments_are_beyond_all_numbers_does_not_end_the_recorder(graph):
+    graph.start(Recorder, {'topics': ['input']})
+    records, _ = listen(graph)
+    runs = graph.advertise(String, 'run', latched(32))
+    runs.publish(String(data=RunNotice(SECOND, SECOND + 9 * PERIOD, 10,
+                                       {'name': 'x', 'arm_length': 1e-300}).to_json()))
+    vehicle = Vehicle(graph, ['input'])
+    for k in range(10):
+        message = sample('input', SECOND + k * PERIOD, 1.0)
+        message.wrench.torque.x = 1e90
+        vehicle.publishers['input'].publish(message)
+    graph.spin_until(lambda: records, 'the record')
+    assert len(records.records()[0]) == 10
+
+
 @pytest.mark.parametrize('parameters', [{'window_samples': 40},
                                         {'window_seconds': 39 * 0.01}])
 def test_a_window_is_complete_when_it_is_full(graph, parameters):

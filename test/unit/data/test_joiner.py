@@ -104,7 +104,7 @@ def test_duplicates_are_counted_and_ignored():
     assert joiner.counts.duplicated == 21
 
 
-@pytest.mark.parametrize('bad', [math.nan, math.inf, -math.inf])
+@pytest.mark.parametrize('bad', [math.nan, math.inf, -math.inf, 1.7e308, -1e200])
 def test_what_is_no_finite_number_spoils_its_row_only(bad):
     joiner = Joiner('ab')
     rows = []

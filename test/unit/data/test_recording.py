@@ -253,19 +253,22 @@ def test_a_bag_whose_topics_do_not_meet_is_refused(tmp_path):
         read_bag(recording.folder / 'bag')
 
 
-NOTICE = {'start_ns': 1, 'stop_ns': 2, 'samples': 3, 'info': {'name': 'x'}}
+NOTICE = {'start_ns': 1, 'stop_ns': 4, 'samples': 3, 'info': {'name': 'x'}}
 
 
 def test_a_notice_reads_back():
-    assert RunNotice.from_json(RunNotice(1, 2, 3, {'name': 'x'}).to_json()) \
-        == RunNotice.from_json(json.dumps(NOTICE)) == RunNotice(1, 2, 3, {'name': 'x'})
+    assert RunNotice.from_json(RunNotice(1, 4, 3, {'name': 'x'}).to_json()) \
+        == RunNotice.from_json(json.dumps(NOTICE)) == RunNotice(1, 4, 3, {'name': 'x'})
 
 
 @pytest.mark.parametrize('text', [
     '', 'no JSON', '[]', '{}', '3', 'null', '"text"', json.dumps({**NOTICE, 'info': 3}),
     json.dumps({**NOTICE, 'info': 'abc'}), json.dumps({**NOTICE, 'start_ns': 'soon'}),
     json.dumps({**NOTICE, 'start_ns': None}), json.dumps({**NOTICE, 'stop_ns': float('inf')}),
-    json.dumps({**NOTICE, 'samples': float('nan')}), '[' * 100_000])
+    json.dumps({**NOTICE, 'samples': float('nan')}), '[' * 100_000,
+    json.dumps({**NOTICE, 'samples': 10 ** 30}), json.dumps({**NOTICE, 'samples': -1}),
+    json.dumps({**NOTICE, 'info': {'run_index': [1]}}),
+    json.dumps({**NOTICE, 'info': {'run_count': 'two'}})])
 def test_what_announces_no_run_is_refused(text, tmp_path):
     with pytest.raises(InputError, match='announces no run'):
         RunNotice.from_json(text)

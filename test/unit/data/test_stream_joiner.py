@@ -40,6 +40,17 @@ def rows_of(joiner, messages):
     return rows + joiner.drain()
 
 
+def test_values_between_which_no_number_is_are_counted_and_not_joined():
+    joiner = StreamJoiner({'pose': INTERPOLATED, 'rate': INTERPOLATED}, 0.1)
+    rows = []
+    for k in range(100):
+        rows += joiner.add('pose', 10 * k * MS, {'px': 0.0})
+        huge = 1.7e308 * (-1) ** k
+        rows += joiner.add('rate', (10 * k + 5) * MS, {'wx': huge if k in (50, 51) else 1.0})
+    assert np.isfinite([row[1] for row in rows + joiner.drain()]).all()
+    assert joiner.counts.nan == 2
+
+
 def test_rows_are_those_of_a_bag_with_the_same_streams():
     """Interpolated and held as data.streams.join does it, at the stamps of the pose."""
     messages = samples()
