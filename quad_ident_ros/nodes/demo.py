@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The demo: three nodes as processes on a domain of their own, watched until they are done."""
 
+from contextlib import suppress
 from dataclasses import dataclass
 import json
 import os
@@ -113,7 +114,8 @@ class Watcher:
 
     def subscribe(self, node):
         """Listen with a node."""
-        heard = [node.create_subscription(*each) for each in (
+        heard = [node.create_subscription(kind, topic, _without_those_of_others(take), quality)
+                 for kind, topic, take, quality in (
             (String, 'run', self._on_run, latched(32)),
             (Float64MultiArray, 'record', self._on_record, latched(16)),
             (String, 'recorder/statistics', self._on_statistics, latched()),
@@ -175,6 +177,15 @@ class Watcher:
             # A grave result has values; without any there is no result.
             if status.name == self._worker and status.level == ERROR and not status.values:
                 self.refusal = status.message
+
+
+def _without_those_of_others(take):
+    """Return a callback that leaves aside what no node of a run sends: refuse_others tells it."""
+    def on_message(message):
+        with suppress(ArithmeticError, LookupError, RecursionError, TypeError, ValueError):
+            take(message)
+
+    return on_message
 
 
 def watch(watcher, nodes, logs):

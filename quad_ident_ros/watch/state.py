@@ -139,7 +139,8 @@ def after_message(state: State, topic: str, step: Callable[[State], State]) -> S
     """
     try:
         return step(state)
-    except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
+    except (ArithmeticError, AttributeError, LookupError, RecursionError, TypeError,
+            ValueError) as error:
         return with_event(state, Event('', topic, 'a message cannot be read '
                                        f'({type(error).__name__}: {error}): start all nodes from '
                                        'the same version'))

@@ -10,10 +10,14 @@ import sys
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 import pytest
 from rcl_interfaces.msg import Log
+from std_msgs.msg import Float64MultiArray, String
 
 from quad_ident_ros.data.replay import read_bag
+from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import load_vehicle
 from quad_ident_ros.nodes.demo import prepared, Watcher
+from quad_ident_ros.nodes.qos import latched
+from quad_ident_ros.nodes.recorder import Recorder
 
 SEED = '4'      # a drag of the rotors
 
@@ -88,6 +92,22 @@ def test_what_the_diagnoser_refuses_is_what_the_demo_ends_with():
     watcher._on_status(DiagnosticArray(status=[DiagnosticStatus(
         name='diagnoser', level=DiagnosticStatus.ERROR, message='3 s are too short')]))
     assert watcher.refusal == '3 s are too short' and not watcher.done
+
+
+def test_what_no_node_of_a_run_sends_does_not_end_it(graph):
+    """It hears of others a moment later, by their publishers, and says so."""
+    watcher = Watcher(1, 'diagnoser', 'diagnosis', lambda text, share: None)
+    watcher.subscribe(graph.probe)
+    other = graph.start(Recorder)      # the second publisher
+    for topic in ('run', 'recorder/statistics', 'diagnoser/progress', 'diagnosis'):
+        publisher = graph.advertise(String, topic, latched(32))
+        for text in ('no JSON', '{}', '[' * 100_000, 'null', '{"info": {}}'):
+            publisher.publish(String(data=text))
+    graph.advertise(Float64MultiArray, 'record', latched(16)).publish(Float64MultiArray())
+    graph.spin_for(0.5)
+    assert not watcher.records and not watcher.done and other.counts.joined == 0
+    with pytest.raises(InputError, match='other nodes publish /'):
+        watcher.refuse_others(graph.probe)
 
 
 def test_what_others_compile_is_no_news_of_a_run():

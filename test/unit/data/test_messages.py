@@ -87,6 +87,7 @@ def test_the_parts_of_the_helper_fit():
     ({'data': (0.0, 1.0, 0.1, float('inf'), 0.2, 3.0)}, 'not a finite number'),
     ({'info': json.dumps({'run_index': [1]})}, 'run_index'),
     ({'info': json.dumps({'run_count': 'two'})}, 'run_count'),
+    ({'info': json.dumps({'dropped': 'many'})}, 'dropped'),
 ])
 def test_what_holds_no_record_is_refused(parts, said):
     with pytest.raises(InputError, match=said) as caught:

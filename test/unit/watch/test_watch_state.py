@@ -121,7 +121,8 @@ def test_the_history_has_an_end_and_begins_with_the_newest():
     assert len(state.history) == KEPT and state.history[0].text == str(KEPT + 49)
 
 
-@pytest.mark.parametrize('text', ['{', '[]', '{}', '{"verdict": 3}', 'null'])
+@pytest.mark.parametrize('text', ['{', '[]', '{}', '{"verdict": 3}', 'null',
+                                  pytest.param('[' * 100_000, id='deep')])
 @pytest.mark.parametrize('step', [with_diagnosis, with_fit])
 def test_a_message_that_is_none_becomes_one_line_of_history(step, text):
     def read(state):
