@@ -138,6 +138,10 @@ class Joiner:
             self.counts.out_of_order += 1
             return self._move(topic, (era - 1, stamp))
         if last - stamp > RESTART_NS:
+            if self._awaits(topic, (era, stamp)) and self._emitted < (era, last):
+                # Its clock did not restart: the others are where it is, one message was far ahead.
+                self._take_back(topic, (era, last))
+                return self._move(topic, (era, stamp))
             self._before[topic] = last
             return self._move(topic, (era + 1, stamp))
         if stamp < last:
@@ -150,6 +154,20 @@ class Joiner:
             # Its clock did not go back, but the others' did, to where it is.
             era = newest
         return self._move(topic, (era, stamp))
+
+    def _awaits(self, topic: str, key: _Key) -> bool:
+        """Whether a row waits for a topic that others have delivered."""
+        parts = self._pending.get(key)
+        return parts is not None and topic not in parts
+
+    def _take_back(self, topic: str, key: _Key) -> None:
+        """Forget the last message of a topic, whose stamp is wrong."""
+        parts = self._pending.get(key, {})
+        parts.pop(topic, None)
+        if not parts:
+            self._pending.pop(key, None)
+        self._newest[topic].pop()
+        self.counts.out_of_order += 1
 
     def _move(self, topic: str, key: _Key) -> _Key:
         if key != self._last[topic]:

@@ -3,6 +3,7 @@
 """Tests of joining topics by stamp."""
 
 import math
+import random
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -144,6 +145,22 @@ def test_one_message_from_long_ago_is_no_new_clock(topics, drain):
     rows += feed(joiner, even('abc', 8010, 9000))
     assert [s for s in stamps(rows) if s != 100] == list(range(5000, 9000, 10))
     assert joiner.counts.dropped == 0
+
+
+@pytest.mark.parametrize('order', ['abc', 'bac', 'acb', 'random'])
+@pytest.mark.parametrize('whose', ['b', 'ab'])
+@pytest.mark.parametrize('ahead', [2000, 10 ** 12])
+def test_one_message_from_far_ahead_costs_its_row_only(order, whose, ahead):
+    """Where it came last in its sample, its topic and the others never met again."""
+    draw, joiner = random.Random(1), Joiner('abc')
+    rows = []
+    for stamp in range(0, 5000, 10):
+        topics = draw.sample('abc', 3) if order == 'random' else order
+        rows += feed(joiner, [(topic, stamp + ahead * (stamp == 2000 and topic in whose))
+                              for topic in topics])
+    wanted = [stamp for stamp in range(0, 5000, 10) if stamp != 2000]
+    assert set(wanted) - set(stamps(rows)) <= {1990, 2010}
+    assert joiner.counts.dropped <= 4
 
 
 def test_messages_that_nobody_joins_are_bounded():
