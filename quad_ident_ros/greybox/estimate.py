@@ -243,18 +243,19 @@ def _aligned(raws: list[np.ndarray], tangents: Iterable[Tangent], scales: Iterab
 
 
 def _weighed(error: np.ndarray, scale: np.ndarray, white: Whitening | None) -> np.ndarray:
-    """Return errors (B, count + 1, 12) over their noise, made white."""
-    error = error * scale
+    """
+    Return errors (B, count + 1, 12) over their noise, made white.
+
+    Not finite where the predictions of a step that is too large are not; no such step is taken.
+    """
+    with np.errstate(invalid='ignore'):
+        error = error * scale
     return error if white is None else white.whitened(error.reshape(len(error), 1, -1))
 
 
 def _cost(raws: Iterable[np.ndarray], scales: Iterable[np.ndarray],
           whites: Iterable[Whitening | None]) -> float:
-    """
-    Return the sum of squares of errors over their noise, made white.
-
-    Infinite where predictions of a step that is too large come to nothing; no such step is taken.
-    """
+    """Return the sum of squares of errors over their noise, made white; as _weighed not finite."""
     with np.errstate(over='ignore'):
         return sum(float(np.sum(_weighed(raw, scale, white) ** 2))
                    for raw, scale, white in zip(raws, scales, whites, strict=True))
