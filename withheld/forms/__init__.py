@@ -36,6 +36,7 @@ from withheld.forms import (
     obstacles,
     packs,
     places,
+    profiles,
     propellers,
     queues,
     readings,
@@ -126,7 +127,7 @@ DEVELOPMENT = {
                   'walking': readings.Walking, 'changed_over': trackers.ChangedOver},
 }
 EVALUATION = {
-    'motor_lag': {'hot_windings': heat.HotWindings, 'averaged': buffers.Averaged},
+    'motor_lag': {'hot_windings': heat.HotWindings, 'profiled': profiles.Profiled},
     'actuation_delay': {'multiplexed': buffers.Multiplexed, 'buffered': buffers.Buffered},
     'rotor_drag': {'lagging_disks': shapes.LaggingDisks},
     'body_drag': {'finned': shapes.Finned, 'own_wake': shapes.OwnWake},

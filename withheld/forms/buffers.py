@@ -1,45 +1,11 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Commands that are averaged, sent for one rotor at a time, or kept until the latest is there."""
-
-from collections import deque
+"""Lines of commands with a slot for each rotor, or with a buffer before the actuators."""
 
 import numpy as np
 
-from withheld.actuators import Line, Motor
+from withheld.actuators import Line
 from withheld.forms.motors import TIME
-
-
-class Averaged(Motor):
-    """
-    A controller that follows the mean of what it was given of late, with the same weight.
-
-    So a step becomes a ramp that ends, however high it is. The moving average: S. W. Smith, The
-    Scientist and Engineer's Guide to Digital Signal Processing, 1997, chapter 15.
-    """
-
-    def __init__(self, size, params, rng):
-        """Set the time that it averages over, s: twice the mean delay."""
-        self.parameters = {'time': TIME * size}
-        self.window = 2.0 * TIME * size
-        self._given, self._sum = None, 0.0
-
-    def turn(self, speeds, command, step):
-        """Return the speeds."""
-        if not self.window:
-            return command
-        if self._given is None:
-            self._given, self._sum = deque([(self.window, speeds)]), self.window * speeds
-        self._given.append((step, command))
-        self._sum = self._sum + step * command
-        rest = step
-        while rest > 1e-12:
-            lasts, one = self._given.popleft()
-            part = min(lasts, rest)
-            self._sum, rest = self._sum - part * one, rest - part
-            if part < lasts:
-                self._given.appendleft((lasts - part, one))
-        return self._sum / self.window
 
 
 class Multiplexed(Line):
@@ -80,7 +46,7 @@ class Buffered(Line):
     """
 
     EVERY, COMES_DOWN = 1.0, 1.2        # s: from one that is late to the next, on average; s
-    OWN, LATE = 0.5, 0.52               # of the mean delay: the least, and how late on average
+    OWN, LATE = 0.5, 0.73               # of the mean delay: the least, and how late on average
     COUNT = 400                         # of those that are late: far more than a flight has
 
     def __init__(self, size, params, rng):
