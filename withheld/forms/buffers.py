@@ -46,7 +46,8 @@ class Buffered(Line):
     """
 
     EVERY, COMES_DOWN = 1.0, 1.2        # s: from one that is late to the next, on average; s
-    OWN, LATE = 0.5, 0.73               # of the mean delay: the least, and how late on average
+    OWN, LATE = 0.5, 0.86               # of the mean delay: the least, and how late on average
+    MOST = 2.0                          # of an average one
     COUNT = 400                         # of those that are late: far more than a flight has
 
     def __init__(self, size, params, rng):
@@ -60,7 +61,7 @@ class Buffered(Line):
         self.times, self.levels = np.cumsum(apart) - 5.0 * self.EVERY, np.empty(self.COUNT)
         level = 1.0
         for k in range(self.COUNT):
-            level = max(level * np.exp(-apart[k] / self.COMES_DOWN), min(late[k], 4.0))
+            level = max(level * np.exp(-apart[k] / self.COMES_DOWN), min(late[k], self.MOST))
             self.levels[k] = level
 
     def waits(self, time):
