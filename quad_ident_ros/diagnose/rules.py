@@ -100,7 +100,9 @@ class Rules:
       visible: of the noise's gap: of what can be closed below it, shares mean nothing.
       noise_share: of the noise's gap: what remains below it is hard to see in a prediction, and
         the noise itself is known to some ten percent only where it has a memory.
-      floors: m, m/s, rad, rad/s that no user of a simulation at 0.5 s minds.
+      floors: m, m/s, rad, rad/s that no user of a simulation at 0.5 s minds. The attitude is that
+        by which gravity makes the velocity, as it grows with the square of the time: 3 v / (g t),
+        and the rate that by which it then grows, 2 / t of it.
       smallest: half of the usual floors: of what can be closed below it, shares mean nothing,
         whatever the tolerance of the user. Presence does not depend on it.
     Where:
@@ -156,9 +158,9 @@ class Rules:
     visible: float = 0.25
     noise_share: float = 0.75
     floors: dict = field(default_factory=lambda: {
-        'position': 0.01, 'velocity': 0.02, 'attitude': 0.01, 'rate': 0.05})
+        'position': 0.01, 'velocity': 0.02, 'attitude': 0.012, 'rate': 0.05})
     smallest: dict[str, float] = field(default_factory=lambda: {
-        'position': 0.005, 'velocity': 0.01, 'attitude': 0.005, 'rate': 0.025})
+        'position': 0.005, 'velocity': 0.01, 'attitude': 0.006, 'rate': 0.025})
     regime: float = 0.35
     unexplained: float = 0.58
     differs: float = 2.0
