@@ -3,8 +3,10 @@
 """
 Velocity and body rate of records that have only position and attitude, as of motion capture.
 
-The slope, at each sample, of the cubic of least squares through the samples around it
-(Savitzky and Golay, Analytical Chemistry 36, 1964), also where these are not evenly spaced.
+Or whose velocity and rate were made from these by differences of one row and the next, which make
+a great noise of a little: 1 mm at 100 Hz is 0.1 m/s. The slope, at each sample, of the cubic of
+least squares through the samples around it (Savitzky and Golay, Analytical Chemistry 36, 1964),
+also where these are not evenly spaced.
 """
 
 from collections.abc import Callable
@@ -26,8 +28,19 @@ MOST = 100      # samples to each side, those of HALF at 2 kHz
 WIDE = 3.0      # periods from which on a step is a gap, across which nothing is differentiated
 _TABLE = 220_000    # samples around others, that are worked on at once
 
+# What makes a recorded slope the difference of rows: at most of them it is, to a tenth of its
+# noise, as no sensor's is by chance; rows that were lost or rounded are the rest. Noise below
+# QUIET (m/s, rad/s) is left as it is: no cubic is better than that, nor than a simulation's.
+ALIKE, MOSTLY, QUIET = 0.1, 0.8, 3e-3
+STEADY = 1.5        # periods that the steps to both neighbours may have
+MANY = 50           # rows from which on it is told
+MAD = 1.4826        # standard deviation over median deviation, of a normal distribution
+
 DIFFERENTIATED = 'differentiated'
 """Info of a record: groups of its states that are derivatives of the others."""
+
+DIFFERENCES = 'differences'
+"""Info of a record: those of them that were recorded as differences from row to row."""
 
 
 def missing_motion(record: FlightRecord) -> tuple[str, ...]:
@@ -40,9 +53,30 @@ def missing_motion(record: FlightRecord) -> tuple[str, ...]:
     return tuple(found)
 
 
+def rough_motion(record: FlightRecord) -> tuple[str, ...]:
+    """Return which of velocity and rate of a record are differences of its pose, row by row."""
+    found = []
+    if len(record) < 2 * FEWEST + 1:
+        return ()
+    if record.has(*POSITION, *VELOCITY):
+        place = record.stack(*POSITION)
+        if _are_differences(record.t, np.diff(place, axis=0), record.stack(*VELOCITY)):
+            found.append('velocity')
+    if record.has(*RATE) and (turns := _turns(record)) is not None:
+        moved = (turns[:-1].inv() * turns[1:]).as_rotvec()
+        if _are_differences(record.t, moved, record.stack(*RATE)):
+            found.append('rate')
+    return tuple(found)
+
+
 def with_motion(record: FlightRecord) -> FlightRecord:
-    """Return a record with the velocity and rate of its pose where it has none of them."""
-    missing = missing_motion(record)
+    """
+    Return a record with the velocity and rate of its pose.
+
+    That is where it has none of them, or where they are differences from row to row.
+    """
+    rough = rough_motion(record)
+    missing = (*missing_motion(record), *rough)
     if not missing or len(record) < 2 * FEWEST + 1:
         return record
     columns = dict(record.columns)
@@ -51,17 +85,49 @@ def with_motion(record: FlightRecord) -> FlightRecord:
         columns |= dict(zip(VELOCITY, _slopes(record.t, lambda at, around: place[around]
                                               - place[at][:, None]).T, strict=True))
     if 'rate' in missing:
-        q = (record.stack(*QUATERNION) if record.has(*QUATERNION) else
-             quaternion_from_euler(record.stack(*EULER)))
-        if np.linalg.norm(q, axis=1).min() < 0.5:
+        turns = _turns(record)
+        if turns is None:
             return record       # no attitude, as the quality of the record says
-        turns = Rotation.from_quat(np.roll(q, -1, axis=1))
 
         def turned(at: np.ndarray, around: np.ndarray) -> np.ndarray:
             vectors = turns[np.repeat(at, around.shape[1])].inv() * turns[around.ravel()]
             return np.asarray(vectors.as_rotvec()).reshape(*around.shape, 3)
         columns |= dict(zip(RATE, _slopes(record.t, turned).T, strict=True))
-    return replace(record, columns=columns, info={**record.info, DIFFERENTIATED: missing})
+    return replace(record, columns=columns, info={**record.info, DIFFERENTIATED: missing,
+                                                  DIFFERENCES: rough})
+
+
+def _turns(record: FlightRecord) -> Rotation | None:
+    """Return the attitudes of a record, None where it has none."""
+    if not (record.has(*QUATERNION) or record.has(*EULER)):
+        return None
+    q = (record.stack(*QUATERNION) if record.has(*QUATERNION) else
+         quaternion_from_euler(record.stack(*EULER)))
+    lengths = np.linalg.norm(q, axis=1)
+    if not np.all(np.isfinite(lengths)) or lengths.min() < 0.5:
+        return None
+    return Rotation.from_quat(np.roll(q, -1, axis=1))
+
+
+def _are_differences(t: np.ndarray, moved: np.ndarray, slope: np.ndarray) -> bool:
+    """
+    Return whether slopes (N, 3) are differences, to the next row, the last one, or of these two.
+
+    Args: t (N,) s; moved (N - 1, 3): how far each row is from the one before.
+    """
+    steps = np.diff(t)
+    period = float(np.median(steps))
+    inner = (steps[:-1] < STEADY * period) & (steps[1:] < STEADY * period)
+    if not period > 0.0 or inner.sum() < MANY:
+        return False
+    mine, third = slope[1:-1][inner], np.diff(slope, 3, axis=0)
+    with np.errstate(all='ignore'):     # values too large to judge, which another check refuses
+        noise = MAD * np.median(np.abs(third), axis=0) / np.sqrt(20.0)
+        each = moved / steps[:, None]
+        both = (moved[1:] + moved[:-1]) / (steps[1:] + steps[:-1])[:, None]
+        return bool(np.all(noise > QUIET)) and any(
+            bool(np.all(np.mean(np.abs(mine - other[inner]) < ALIKE * noise, axis=0) > MOSTLY))
+            for other in (each[1:], each[:-1], both))
 
 
 def _slopes(t: np.ndarray, moved: Callable[[np.ndarray, np.ndarray], np.ndarray]) -> np.ndarray:

@@ -7,7 +7,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from quad_ident_ros.data.cutting import without
-from quad_ident_ros.data.differentiated import DIFFERENTIATED, HALF, missing_motion
+from quad_ident_ros.data.differentiated import (
+    DIFFERENCES,
+    DIFFERENTIATED,
+    HALF,
+    missing_motion,
+    rough_motion,
+)
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.record import EULER, FlightRecord, QUATERNION, unit
 from quad_ident_ros.model.vehicle import Vehicle
@@ -49,12 +55,20 @@ def incomplete(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
 
 
 def differentiated(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
-    """Find velocity and rate that were not recorded, and are taken from position and attitude."""
+    """Find velocity and rate that are taken from position and attitude, not from the record."""
     pairs = {'velocity': ('vx, vy, vz', 'the position'), 'rate': ('wx, wy, wz', 'the attitude')}
-    return [Finding('differentiated', 'info', pairs[group][0],
-                    f'not recorded; diagnose and fit take the {group} from {pairs[group][1]}, by '
-                    f'cubics over {2 * HALF:g} s', f'record the {group}, where there is one')
-            for group in record.info.get(DIFFERENTIATED, missing_motion(record))]
+    rough = record.info.get(DIFFERENCES) or rough_motion(record)
+    groups = record.info.get(DIFFERENTIATED) or (*missing_motion(record), *rough)
+    found = []
+    for group in groups:
+        where, pose = pairs[group]
+        why = (f'differences of {pose} from one row to the next, which turn a little noise into '
+               'a lot' if group in rough else 'not recorded')
+        found.append(Finding(
+            'differentiated', 'info', where,
+            f'{why}; diagnose and fit take the {group} from {pose}, by cubics over '
+            f'{2 * HALF:g} s', f'record the {group}, where there is one'))
+    return found
 
 
 def frozen(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:

@@ -7,11 +7,15 @@ from dataclasses import replace
 from flightmaker import changed, flight, VEHICLE
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from quad_ident_ros.data.differentiated import DIFFERENTIATED, missing_motion, with_motion
 from quad_ident_ros.data.quality import cautions, findings
 from quad_ident_ros.diagnose.diagnosis import diagnose
+from quad_ident_ros.flight.fly import fly_closed_loop
+from quad_ident_ros.flight.measure import SENSORS
 
+P, Q = ('px', 'py', 'pz'), ('qw', 'qx', 'qy', 'qz')
 V, W = ('vx', 'vy', 'vz'), ('wx', 'wy', 'wz')
 NONE = dict.fromkeys((*V, *W, 'ax', 'ay', 'az'))
 
@@ -57,3 +61,65 @@ def test_motion_capture_and_commands_are_enough_for_a_verdict():
     record = changed(flight(seconds=20.0), **NONE)
     assert diagnose([record], VEHICLE).verdict == ('none',)
     assert diagnose([record], replace(VEHICLE, mass=0.6)).verdict[0] == 'mass_offset'
+
+
+def differences(record, kind):
+    """Return velocity and rate as people make them of the pose, by the rows around each."""
+    rows = np.clip(np.arange(len(record)), 1, len(record) - 2)
+    first, last = rows - (kind != 'next'), rows + (kind != 'last')
+    steps = (record.t[last] - record.t[first])[:, None]
+    turns = Rotation.from_quat(np.roll(record.stack(*Q), -1, axis=1))
+    place = record.stack(*P)
+    return ((place[last] - place[first]) / steps,
+            (turns[first].inv() * turns[last]).as_rotvec() / steps)
+
+
+def with_slopes(record, velocity, rate):
+    """Return a record with other velocities and rates."""
+    return changed(record, **dict(zip(V, velocity.T, strict=True)),
+                   **dict(zip(W, rate.T, strict=True)))
+
+
+@pytest.mark.parametrize('kind', ['next', 'last', 'both'])
+@pytest.mark.parametrize('lost', [0.0, 0.05])
+def test_differences_of_rows_give_way_to_cubics(kind, lost):
+    record, truth = flight(seconds=6.0), flight(seconds=6.0, noise=0.0)
+    velocity, rate = differences(record, kind)
+    rough = with_slopes(record, velocity, rate)
+    kept = np.random.default_rng(0).uniform(size=len(record)) >= lost
+    rough, truth = (changed(one, t=one.t[kept], **{name: values[kept] for name, values in
+                                                   one.columns.items()}) for one in (rough, truth))
+    made = with_motion(rough)
+    assert made.info[DIFFERENTIATED] == ('velocity', 'rate')
+    for names in (V, W):
+        error, before = (np.std(one.stack(*names) - truth.stack(*names)) for one in (made, rough))
+        # Of 11 points a cubic's slope has 0.25 of the noise over a period, a difference 0.71 or more.
+        assert error < 0.4 * before
+    for one in (rough, made):
+        said = [found for found in findings(one) if found.code == 'differentiated']
+        assert len(said) == 2 and all('differences' in found.message for found in said)
+
+
+def test_slopes_with_a_noise_of_their_own_stay():
+    record = flight(seconds=6.0)
+    velocity, rate = differences(record, 'both')
+    noise = np.random.default_rng(1).normal(size=(2, *velocity.shape))
+    own = with_slopes(record, velocity + 0.05 * noise[0], rate + 0.2 * noise[1])
+    assert with_motion(own) is own
+
+
+@pytest.mark.parametrize('kind', ['next', 'last', 'both'])
+def test_differences_without_noise_stay_for_no_cubic_is_better(kind):
+    """A simulation by Euler's method moves by just the velocity that it records."""
+    record = flight(seconds=6.0, noise=0.0)
+    exact = with_slopes(record, *differences(record, kind))
+    assert with_motion(exact) is exact
+    assert 'differentiated' not in [found.code for found in findings(exact)]
+
+
+@pytest.mark.slow
+def test_velocities_that_are_differences_of_what_repeats_lead_to_no_unknown():
+    flights = [fly_closed_loop(VEHICLE, {}, name, duration=15.0, seed=seed,
+                               noise=SENSORS['faulty'])
+               for seed, name in enumerate(('lissajous', 'figure8', 'circle'))]
+    assert diagnose(flights, VEHICLE).verdict == ('none',)
