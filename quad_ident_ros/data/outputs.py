@@ -13,7 +13,14 @@ from quad_ident_ros.data.mapping import Actuators, actuators_from, chosen_output
 from quad_ident_ros.data.measured_speeds import by_measured
 from quad_ident_ros.data.motor_order import order_of, rotors_of
 from quad_ident_ros.data.record import FlightRecord
-from quad_ident_ros.data.signal_kind import described, hovers_signed, kinds_of, MANY
+from quad_ident_ros.data.signal_kind import (
+    described,
+    hovers_signed,
+    kinds_of,
+    LINEAR,
+    linear_in,
+    MANY,
+)
 from quad_ident_ros.data.thrust_curve import in_words as curve_in_words
 from quad_ident_ros.data.thrust_curve import share_of_thrust
 from quad_ident_ros.data.thrust_level import FULL_SPEED, full_speed, levelled
@@ -74,11 +81,16 @@ def commanded(records: Sequence[FlightRecord], vehicle: Vehicle | None,
 
 @dataclass(frozen=True)
 class _Map:
-    """Motors, whose gain may be unknown, where they are from, and whether their shape is known."""
+    """
+    Motors, whose gain may be unknown, where they are from, and whether their shape is known.
+
+    assumed: whether neither file nor log says that the speed is linear in the signal.
+    """
 
     motors: Motors
     said: str
     shaped: bool = True
+    assumed: bool = False
 
 
 def _with_commands(records: list[FlightRecord], vehicle: Vehicle | None,
@@ -97,6 +109,8 @@ def _with_commands(records: list[FlightRecord], vehicle: Vehicle | None,
         return [_noted(record, note) for record in records]
     motors, said = made.motors, made.said
     info: dict[str, Any] = {BY_MOTORS: True} if made.motors.uncertainty else {}
+    if made.assumed:
+        info[LINEAR] = linear_in(motors.kind)
     _refuse_voltage(records, motors)
     thrust = 1.0 if vehicle is None else vehicle.thrust_coefficient
     if not motors.whole:
@@ -200,7 +214,8 @@ def _map_of(where: str, about: dict, values: np.ndarray, vehicle: Vehicle | None
             values, vehicle.hover_speed, (vehicle.speed_min, vehicle.speed_max)):
         said += (f'as signals from -1 to 1 they would carry {vehicle.name}: write motors: '
                  f'{SIGNED} into its file if they are; ')
-    return _Map(motors, said + (_in_words(motors) if motors.whole else ''), bool(told.gives))
+    return _Map(motors, said + (_in_words(motors) if motors.whole else ''), bool(told.gives),
+                vehicle.motors is None and curve is None and kind not in TO_SPEED)
 
 
 def _curve_of(record: FlightRecord, vehicle: Vehicle | None,
