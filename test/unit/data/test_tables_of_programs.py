@@ -22,6 +22,7 @@ from quad_ident_ros.data.columns import from_euler
 from quad_ident_ros.data.differentiated import with_motion
 from quad_ident_ros.data.load import load, load_all
 from quad_ident_ros.data.mapping import mapping_from
+from quad_ident_ros.data.quality import findings
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.attitude import euler_from_quaternion, product
 from quad_ident_ros.model.dynamics import course_of, states_of
@@ -566,3 +567,25 @@ def test_states_and_commands_in_two_files_say_the_way_out_which_works(tmp_path):
     order = np.argsort(beside['time'])
     joined = {name: values[order] for name, values in beside.items()}
     assert load(table(tmp_path, joined), vehicle=VEHICLE).has('px', 'qw', 'cmd4')
+
+
+@pytest.mark.parametrize('noise', [0.0, 1.0])
+def test_a_world_with_y_up_is_told_and_the_mapping_of_the_remedy_reads_it(tmp_path, noise):
+    record = flight(seconds=10.0, rate=100.0, noise=noise)
+    (x, y, z), (w, i, j, k) = 1000 * record.stack(*PLACE).T, record.stack(*Q).T
+    found = {'time': T, **named(['x', 'y', 'z'], np.column_stack([x, z, -y])),
+             **named(['qx', 'qy', 'qz', 'qw'], np.column_stack([i, k, -j, w])),
+             **columns('m', '1234', CMD)}
+    path = table(tmp_path, found)
+    [told] = [one for one in findings(load(path, vehicle=VEHICLE), VEHICLE)
+              if one.code == 'frame_y_up']
+    assert told.severity == 'error' and 'py and qy the z of the file' in told.remedy
+    mapping = mapping_from({'columns': {
+        't': 'time', 'px': {'column': 'x', 'unit': 'mm'}, 'py': {'column': 'z', 'unit': '-mm'},
+        'pz': {'column': 'y', 'unit': 'mm'}, 'qw': 'qw', 'qx': 'qx',
+        'qy': {'column': 'qz', 'unit': '-1'}, 'qz': 'qy'}}, 'm')
+    read = load(path, mapping)
+    np.testing.assert_allclose(read.stack(*PLACE), record.stack(*PLACE), atol=1e-9)
+    assert 'frame_y_up' not in [one.code for one in findings(read, VEHICLE)]
+    for right in (record, FLIGHT):
+        assert 'frame_y_up' not in [one.code for one in findings(right, VEHICLE)]
