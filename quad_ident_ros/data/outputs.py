@@ -16,6 +16,7 @@ from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.data.signal_kind import (
     described,
     hovers_signed,
+    in_newtons,
     kinds_of,
     LINEAR,
     linear_in,
@@ -198,6 +199,9 @@ def _map_of(where: str, about: dict, values: np.ndarray, vehicle: Vehicle | None
         kind, how = about.get('kind', ''), 'as the log has them'
         if not kind:
             kinds = _kinds_of(values, vehicle)
+            if in_newtons(values, kinds, vehicle.mass * vehicle.gravity / len(vehicle.rotors),
+                          vehicle.hover_speed, (vehicle.speed_min, vehicle.speed_max)):
+                raise _forces(where, values, vehicle)
             if len(kinds) != 1:
                 if not np.nanmax(np.ptp(np.nan_to_num(values), axis=0), initial=0.0) > 0:
                     return None
@@ -269,6 +273,16 @@ def _doubt(where: str, values: np.ndarray, kinds: Sequence[str]) -> InputError:
     return InputError(f'{where} {what} write into the vehicle file what they are, such as motors: '
                       f'{line}, or into a mapping as actuators: {line}; kinds are '
                       f'{", ".join(KINDS)}')
+
+
+def _forces(where: str, values: np.ndarray, vehicle: Vehicle) -> InputError:
+    """Return the InputError for signals that are thrusts in N."""
+    low, high = np.nanmin(values), np.nanmax(values)
+    most = f'{np.ceil(10.0 * high) / 10.0:g}'
+    return InputError(
+        f'{where}: the outputs, {low:.6g} to {high:.6g}, carry {vehicle.name} as thrusts of its '
+        'rotors in N, and not as signals; write into the vehicle file, if they are, motors: '
+        f'{{kind: normalised, maximum: {most}, thrust: {{gain: {most}}}}}')
 
 
 def _refuse_range(where: str, values: np.ndarray, vehicle: Vehicle) -> None:

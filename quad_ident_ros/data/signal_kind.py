@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What kind of signals to motors values are, by their size."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from quad_ident_ros.model.motors import KINDS, TO_SPEED
@@ -59,6 +61,27 @@ def kinds_of(values: np.ndarray, hover: float | None = None,
     elif not found:     # what it would be without a vehicle to hold it against
         found += [kind for kind in TO_SPEED if 100.0 < high < FASTEST[kind]][:1]
     return tuple(found)
+
+
+def in_newtons(values: np.ndarray, kinds: Sequence[str], weight: float, hover: float,
+               ends: tuple[float, float]) -> bool:
+    """
+    Whether signals carry a vehicle as thrusts of its rotors in N, and not as what they may be.
+
+    Args: kinds that they may be by their size; weight of the vehicle on each rotor, N; hover and
+    ends as in kinds_of.
+    """
+    on = values[np.isfinite(values) & (values > 0)]
+    usual = float(np.median(on)) if len(on) else 0.0
+    if not NEAR_HOVER[0] ** 2 < usual / weight < NEAR_HOVER[1] ** 2:
+        return False
+    full = {'normalised': 1.0, 'percent': 100.0}
+    shares = [usual / full[kind] for kind in kinds if kind in full]
+    if len(shares) < len(kinds) or (shares and not np.isfinite(ends[1])):
+        return False
+    speeds = [ends[0] + of_full * (ends[1] - ends[0]) for share in shares
+              for of_full in (share, np.sqrt(share))]
+    return not any(NEAR_HOVER[0] < speed / hover < NEAR_HOVER[1] for speed in speeds)
 
 
 def linear_in(kind: str) -> list[tuple[str, float, float]]:

@@ -10,6 +10,7 @@ from flightmaker import flight, VEHICLE
 import numpy as np
 import pytest
 from usd_files import crazyflie_events, usdlog
+import yaml
 
 from quad_ident_ros.data.csv import write_csv
 from quad_ident_ros.data.load import load
@@ -302,3 +303,16 @@ def test_without_the_speed_at_full_signal_shares_of_thrust_are_told_as_well(tmp_
     for shares, known in ((SHARES_OF_THRUST, True), (SHARES, False)):
         read = load(with_outputs(tmp_path, shares), vehicle=replace(unknown, speed_min=0.0))
         assert len(curves(read, unknown)) == known
+
+
+@pytest.mark.parametrize('size', [1.0, 4.0, 0.05])
+def test_thrusts_in_newtons_are_refused_with_the_motors_that_read_them(tmp_path, size):
+    """By their size alone they are of no kind, per cent or normalised."""
+    made = replace(VEHICLE, mass=size * VEHICLE.mass,
+                   thrust_coefficient=size * VEHICLE.thrust_coefficient)
+    path = with_outputs(tmp_path, made.thrust_coefficient * SPEEDS ** 2)
+    with pytest.raises(InputError, match='thrusts of its rotors in N') as caught:
+        load(path, vehicle=made)
+    told = yaml.safe_load(str(caught.value).split('motors: ')[1])
+    read = load(path, vehicle=replace(made, motors=motors_from('v', told)))
+    np.testing.assert_allclose(read.stack(*CMD), SPEEDS, rtol=1e-6)
