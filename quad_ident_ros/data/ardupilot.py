@@ -14,6 +14,16 @@ from typing import TypeGuard
 import numpy as np
 
 from quad_ident_ros.data import frames
+from quad_ident_ros.data.ardupilot_lanes import (
+    instance_field,
+    instances_of,
+    of_primary,
+    OLDER,
+    Primary,
+    primary_of,
+    READ_BESIDE,
+    timed,
+)
 from quad_ident_ros.data.autopilot import known_names, outputs_stream, unit_quaternions
 from quad_ident_ros.data.dataflash import Messages, read_messages
 from quad_ident_ros.data.mapping import Actuators, Mapping
@@ -22,6 +32,7 @@ from quad_ident_ros.data.motor_layouts import directions
 from quad_ident_ros.data.motor_order import about_motors
 from quad_ident_ros.data.readers.base import Content, content_of
 from quad_ident_ros.data.record import FlightRecord, QUATERNION
+from quad_ident_ros.data.split import split
 from quad_ident_ros.data.streams import INTERPOLATED, join, SLOW, Stream
 from quad_ident_ros.data.thrust_curve import ardupilot_curve
 from quad_ident_ros.errors import InputError
@@ -35,7 +46,7 @@ ROLES = {'XKQ': ('attitude',), 'NKQ': ('attitude',), 'ATT': ('attitude',),
 """Types of messages that are read, and for what."""
 
 _ABOUT = ('PARM', 'MSG', 'VER', 'TIME', 'MODE')
-_INSTANCES = ('C', 'I', 'Instance', 'Inst')     # fields that number EKF cores, sensors, ...
+_TODAY = {older: name for name, names in OLDER.items() for older in names}
 _BUILDS = {1: 'Rover', 3: 'ArduPlane', 4: 'AntennaTracker', 7: 'ArduSub', 12: 'Blimp'}
 _OTHERS = {'ArduPlane': 'ArduPlane', 'ArduRover': 'Rover', 'APM:Rover': 'Rover', 'Rover': 'Rover',
            'ArduSub': 'ArduSub', 'Blimp': 'Blimp', 'AntennaTracker': 'AntennaTracker',
@@ -49,7 +60,9 @@ _PLACES: dict[tuple[float | None, ...], str] = {
 """Where motors are, by FRAME_CLASS and FRAME_TYPE; quad plus and quad X."""
 
 _LAYOUTS: dict[tuple[float | None, ...], str] = {
-    (1, 0): 'quad +', (1, 1): 'quad x', (2, 0): 'hexa +', (2, 1): 'hexa x',
+    (1, 0): 'quad +', (1, 1): 'quad x', (1, 12): 'quad x of Betaflight', (1, 13): 'quad x of DJI',
+    (1, 14): 'quad x, clockwise', (1, 18): 'quad x of Betaflight, turning outwards',
+    (2, 0): 'hexa +', (2, 1): 'hexa x',
     (3, 0): 'octo +', (3, 1): 'octo x', (4, 0): 'coaxial octo +', (4, 1): 'coaxial octo x'}
 
 _BOARD = re.compile(r'([\w-]+) ((?:[0-9A-F]{8} ?){3})')     # name, and serial number of its chip
@@ -59,13 +72,13 @@ _MAP = ('MOT_PWM_MIN', 'MOT_PWM_MAX', 'MOT_SPIN_ARM', 'MOT_SPIN_MIN', 'MOT_SPIN_
 _AXIS, _FLATTENING = 6378137.0, 1 / 298.257223563      # WGS 84
 
 
-def read_ardupilot(path: str | Path, mapping: Mapping | None = None) -> FlightRecord:
+def read_ardupilot(path: str | Path, mapping: Mapping | None = None) -> list[FlightRecord]:
     """
-    Return the FlightRecord of a log of ArduCopter, in ENU and FLU.
+    Return the FlightRecord of a log of ArduCopter, in ENU and FLU, split where its EKF changed.
 
     The time base is that of the outputs (RCOU), in the order of the motors as SERVOn_FUNCTION
-    tells it: output1..N, us of PWM. Of EKF cores, sensors and batteries the first is read, or
-    that of the mapping's instances. No stream is required.
+    tells it: output1..N, us of PWM. Of the EKF's lanes the primary one is read, of sensors and
+    batteries the first, or that of the mapping's instances. No stream is required.
     Args: path; mapping Mapping or None.
     Raises InputError that names file and message, also for vehicles that are no multirotor.
     """
@@ -75,12 +88,13 @@ def read_ardupilot(path: str | Path, mapping: Mapping | None = None) -> FlightRe
         if name not in ROLES:
             raise InputError(f'{path}: instances: {name!r} is not read; name one of '
                              f'{", ".join(ROLES)}')
-    found, damaged = read_messages(path, {*ROLES, *_ABOUT})
+    found, damaged = read_messages(path, {*ROLES, *_ABOUT, *READ_BESIDE})
     parameters = _parameters(found)
     _refuse_others(path, found, parameters)
-    data = {name: _instance(path, name, found.get(name), mapping.instances.get(name))
-            for name in ROLES if name != 'ESC'}
     notes = [f'{damaged} bytes of the log are not messages and are left out'] if damaged else []
+    flown = {name: primary_of(name, found) for name in ROLES if name not in mapping.instances}
+    data = {name: _instance(path, name, found, mapping.instances.get(name), flown.get(name), notes)
+            for name in _by_preference(parameters) if name != 'ESC'}
     states = [_attitude(data), *_motion(data), _rate(data), _specific_force(data), _battery(data)]
     channels = _channels(parameters)
     outputs = _outputs(path, data['RCOU'], channels, mapping.actuators, notes)
@@ -92,11 +106,32 @@ def read_ardupilot(path: str | Path, mapping: Mapping | None = None) -> FlightRe
     if outputs is not None or rotors:
         notes += _order_notes(parameters, bool(channels))
     start, t, columns, left_out = join(path, streams)
-    return FlightRecord(t, columns, {'name': path.stem, 'source': str(path), 'start_ns': start,
+    record = FlightRecord(t, columns, {'name': path.stem, 'source': str(path), 'start_ns': start,
                                      'notes': [*notes, *left_out],
                                      'motors': _about_motors(parameters, channels),
                                      'hardware': _hardware(found),
                                      'modes': _modes(found.get('MODE'), start)})
+    return split(record, [((before - start) * 1e-9, (after - start) * 1e-9, what)
+                          for before, after, what in _changes(data, flown)])
+
+
+def _by_preference(parameters: dict[str, float]) -> list[str]:
+    """Return the names of ROLES, those of the EKF first that the vehicle flew by."""
+    second = parameters.get('AHRS_EKF_TYPE') == 2
+    return sorted(ROLES, key=lambda name: name.startswith('XK')) if second else list(ROLES)
+
+
+def _changes(data: dict[str, Messages | None],
+             flown: dict[str, Primary | None]) -> list[tuple[int, int, str]]:
+    """Return the changes of the lanes that are read, as Primary has them."""
+    used = [flown.get(name) for names in (('XKQ', 'NKQ'), ('XKF1', 'NKF1'))
+            for name in _there(data, *names)[:1]]
+    return list(dict.fromkeys(one for primary in used if primary for one in primary.changes()))
+
+
+def _there(data: dict[str, Messages | None], *names: str) -> list[str]:
+    """Return those of names that there are messages of, in the order of data."""
+    return [name for name in data if name in names and data[name] is not None]
 
 
 def _modes(messages: Messages | None, start_ns: int) -> list[tuple[float, str]]:
@@ -106,7 +141,7 @@ def _modes(messages: Messages | None, start_ns: int) -> list[tuple[float, str]]:
         return []
     numbers = [name for name in ('ModeNum', 'Mode') if name in messages.fields
                and messages.rows[name].dtype.kind in 'iu']
-    if not numbers or not _timed(messages):
+    if not numbers or not timed(messages):
         return []
     names = {number: name.lower().replace('_', ' ') for number, name in mode_mapping_acm.items()}
     stamps = messages.rows['TimeUS'].astype(np.int64) * 1000
@@ -117,48 +152,39 @@ def contents(path: str | Path) -> list[Content]:
     """Return the Content of each type of message, of each of its instances; errors as above."""
     found, _ = read_messages(path)
     stamps = {name: messages.rows['TimeUS'].astype(np.int64) * 1000
-              for name, messages in found.items() if _timed(messages) and len(messages)}
+              for name, messages in found.items() if timed(messages) and len(messages)}
     origin = min((int(values.min()) for values in stamps.values()), default=0)
     listed = []
     for name, values in sorted(stamps.items()):
-        messages, field = found[name], _instance_field(found[name])
+        messages, field = found[name], instance_field(found[name])
         numbers = [None] if field is None else np.unique(messages.rows[field]).tolist()
         for number in numbers:
             some = slice(None) if number is None else messages.rows[field] == number
             listed.append(content_of(name if number is None else f'{name}[{number}]',
                                      messages.letters, values[some], origin, messages.fields,
-                                     ROLES.get(name, ())))
+                                     ROLES.get(_TODAY.get(name, name), ())))
     return listed
 
 
-def _timed(messages: Messages) -> bool:
-    return 'TimeUS' in messages.fields and messages.rows['TimeUS'].dtype.kind in 'iu'
-
-
-def _instance_field(messages: Messages) -> str | None:
-    """Return the field that numbers instances, or None; it comes right after the stamp."""
-    name = messages.fields[1] if len(messages.fields) > 1 else None
-    small = name in _INSTANCES and messages.rows[name].dtype in (np.uint8, np.int8)
-    return name if small else None
-
-
-def _instance(path: Path, name: str, messages: Messages | None, number: int | None
-              ) -> Messages | None:
-    """Return the messages of one instance, the first if none is named, or None."""
-    field = None if messages is None else _instance_field(messages)
-    there = [] if messages is None else [0] if field is None else sorted(
-        set(messages.rows[field].tolist()))
+def _instance(path: Path, name: str, found: dict[str, Messages], number: int | None,
+              primary: Primary | None, notes: list[str]) -> Messages | None:
+    """Return the messages of one instance, the primary or first if none is named, or None."""
+    there = instances_of(name, found)
     if number is not None and number not in there:
         raise InputError(f'{path}: instances: there is no {name} {number}; the log has: '
                          f'{", ".join(map(str, there)) or "none"}')
-    if messages is None or not there:
+    if not there:
         return None
-    if not _timed(messages):
+    if not all(map(timed, there.values())):
         raise InputError(f'{path}, message {name}: there is no stamp TimeUS; this is not a log of '
                          'ArduPilot 3.3 or later')
-    if field is not None:
-        messages = messages.only(messages.rows[field] == (there[0] if number is None else number))
-    return messages
+    if primary is None or len(there) == 1:
+        return there[min(there) if number is None else number]
+    followed = of_primary(there, primary)
+    lanes = ', '.join(map(str, dict.fromkeys(primary.numbers.tolist())))
+    notes.append(f'{name}: lane {lanes} of {len(there)}, the primary of the EKF' if followed else
+                 f'{name}: lane {min(there)}, for the primary of the EKF, {lanes}, is not logged')
+    return there[min(there)] if followed is None else followed
 
 
 def _parameters(found: dict[str, Messages]) -> dict[str, float]:
@@ -217,7 +243,7 @@ def _stack(messages: Messages, fields: Sequence[str]) -> np.ndarray:
 
 def _attitude(data: dict[str, Messages | None]) -> Stream | None:
     fields = ('Q1', 'Q2', 'Q3', 'Q4')
-    for name in ('XKQ', 'NKQ'):
+    for name in _there(data, 'XKQ', 'NKQ'):
         messages = data[name]
         if _has(messages, *fields):
             q = unit_quaternions(_stack(messages, fields))
@@ -232,7 +258,7 @@ def _attitude(data: dict[str, Messages | None]) -> Stream | None:
 def _motion(data: dict[str, Messages | None]) -> list[Stream]:
     """Return the streams of position and velocity, from the EKF, or else from POS and GPS."""
     position, velocity = ('px', 'py', 'pz'), ('vx', 'vy', 'vz')
-    for name in ('XKF1', 'NKF1'):
+    for name in _there(data, 'XKF1', 'NKF1'):
         messages = data[name]
         if _has(messages, 'PN', 'PE', 'PD', 'VN', 'VE', 'VD'):
             return [_stream(messages, (*position, *velocity), np.hstack(
@@ -335,8 +361,8 @@ def _outputs(path: Path, messages: Messages | None, channels: dict[int, int],
 
 def _rotors(messages: Messages | None, channels: dict[int, int], notes: list[str]) -> list[Stream]:
     """Return the streams of measured rotor speeds, one for each motor, or none."""
-    field = None if messages is None else _instance_field(messages)
-    if field is None or not _has(messages, 'RPM') or not _timed(messages):
+    field = None if messages is None else instance_field(messages)
+    if field is None or not _has(messages, 'RPM') or not timed(messages):
         return []
     count = np.bincount(messages.rows[field].astype(np.uint8), minlength=256)
     there = np.flatnonzero(count > 1).tolist()

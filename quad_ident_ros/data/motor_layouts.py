@@ -18,6 +18,10 @@ _CCW, _CW = -1, 1       # spin: the sign of the torque about the upward axis tha
 _MOTORS = {
     'quad x': ((45, _CCW), (-135, _CCW), (-45, _CW), (135, _CW)),
     'quad +': ((90, _CCW), (-90, _CCW), (0, _CW), (180, _CW)),
+    'quad x of Betaflight': ((135, _CW), (45, _CCW), (-135, _CCW), (-45, _CW)),
+    'quad x of Betaflight, turning outwards': ((135, _CCW), (45, _CW), (-135, _CW), (-45, _CCW)),
+    'quad x of DJI': ((45, _CCW), (-45, _CW), (-135, _CCW), (135, _CW)),
+    'quad x, clockwise': ((45, _CCW), (135, _CW), (-135, _CCW), (-45, _CW)),
     'hexa x': ((90, _CW), (-90, _CCW), (-30, _CW), (150, _CCW), (30, _CCW), (-150, _CW)),
     'hexa +': ((0, _CW), (180, _CCW), (-120, _CW), (60, _CCW), (-60, _CCW), (120, _CW)),
     'octo x': ((22.5, _CW), (-157.5, _CW), (67.5, _CCW), (157.5, _CCW), (-22.5, _CCW),

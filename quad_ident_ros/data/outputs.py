@@ -13,7 +13,15 @@ from quad_ident_ros.data.mapping import Actuators, actuators_from, chosen_output
 from quad_ident_ros.data.measured_speeds import by_measured
 from quad_ident_ros.data.motor_order import order_of, rotors_of
 from quad_ident_ros.data.record import FlightRecord
-from quad_ident_ros.data.signal_kind import described, hovers_signed, kinds_of, MANY
+from quad_ident_ros.data.signal_kind import (
+    described,
+    hovers_signed,
+    in_newtons,
+    kinds_of,
+    LINEAR,
+    linear_in,
+    MANY,
+)
 from quad_ident_ros.data.thrust_curve import in_words as curve_in_words
 from quad_ident_ros.data.thrust_curve import share_of_thrust
 from quad_ident_ros.data.thrust_level import FULL_SPEED, full_speed, levelled
@@ -74,11 +82,16 @@ def commanded(records: Sequence[FlightRecord], vehicle: Vehicle | None,
 
 @dataclass(frozen=True)
 class _Map:
-    """Motors, whose gain may be unknown, where they are from, and whether their shape is known."""
+    """
+    Motors, whose gain may be unknown, where they are from, and whether their shape is known.
+
+    assumed: whether neither file nor log says that the speed is linear in the signal.
+    """
 
     motors: Motors
     said: str
     shaped: bool = True
+    assumed: bool = False
 
 
 def _with_commands(records: list[FlightRecord], vehicle: Vehicle | None,
@@ -97,6 +110,8 @@ def _with_commands(records: list[FlightRecord], vehicle: Vehicle | None,
         return [_noted(record, note) for record in records]
     motors, said = made.motors, made.said
     info: dict[str, Any] = {BY_MOTORS: True} if made.motors.uncertainty else {}
+    if made.assumed:
+        info[LINEAR] = linear_in(motors.kind)
     _refuse_voltage(records, motors)
     thrust = 1.0 if vehicle is None else vehicle.thrust_coefficient
     if not motors.whole:
@@ -184,6 +199,9 @@ def _map_of(where: str, about: dict, values: np.ndarray, vehicle: Vehicle | None
         kind, how = about.get('kind', ''), 'as the log has them'
         if not kind:
             kinds = _kinds_of(values, vehicle)
+            if in_newtons(values, kinds, vehicle.mass * vehicle.gravity / len(vehicle.rotors),
+                          vehicle.hover_speed, (vehicle.speed_min, vehicle.speed_max)):
+                raise _forces(where, values, vehicle)
             if len(kinds) != 1:
                 if not np.nanmax(np.ptp(np.nan_to_num(values), axis=0), initial=0.0) > 0:
                     return None
@@ -200,7 +218,8 @@ def _map_of(where: str, about: dict, values: np.ndarray, vehicle: Vehicle | None
             values, vehicle.hover_speed, (vehicle.speed_min, vehicle.speed_max)):
         said += (f'as signals from -1 to 1 they would carry {vehicle.name}: write motors: '
                  f'{SIGNED} into its file if they are; ')
-    return _Map(motors, said + (_in_words(motors) if motors.whole else ''), bool(told.gives))
+    return _Map(motors, said + (_in_words(motors) if motors.whole else ''), bool(told.gives),
+                vehicle.motors is None and curve is None and kind not in TO_SPEED)
 
 
 def _curve_of(record: FlightRecord, vehicle: Vehicle | None,
@@ -254,6 +273,16 @@ def _doubt(where: str, values: np.ndarray, kinds: Sequence[str]) -> InputError:
     return InputError(f'{where} {what} write into the vehicle file what they are, such as motors: '
                       f'{line}, or into a mapping as actuators: {line}; kinds are '
                       f'{", ".join(KINDS)}')
+
+
+def _forces(where: str, values: np.ndarray, vehicle: Vehicle) -> InputError:
+    """Return the InputError for signals that are thrusts in N."""
+    low, high = np.nanmin(values), np.nanmax(values)
+    most = f'{np.ceil(10.0 * high) / 10.0:g}'
+    return InputError(
+        f'{where}: the outputs, {low:.6g} to {high:.6g}, carry {vehicle.name} as thrusts of its '
+        'rotors in N, and not as signals; write into the vehicle file, if they are, motors: '
+        f'{{kind: normalised, maximum: {most}, thrust: {{gain: {most}}}}}')
 
 
 def _refuse_range(where: str, values: np.ndarray, vehicle: Vehicle) -> None:

@@ -29,6 +29,8 @@ Columns: TypeAlias = dict[str, np.ndarray]
 RANGES = {'PWM': (800.0, 2200.0), 'DSHOT': (1.0, 1999.0)}
 """Kind of outputs -> between which values all of them lie; off is 0 or nan."""
 
+LINEAR_SPEED = 'rotor speed linear in the signal (THR_MDL_FAC is not set)'
+
 UNORDERED = ('{topic}: the log does not say which motor lies where (CA_ROTOR*, MAV_TYPE): outputs '
              'are taken in the order of the rotors; if they are in another one, give a mapping '
              'with actuators: kind and order')
@@ -147,7 +149,7 @@ def _map(signal: np.ndarray, stamps: np.ndarray, measured: Samples | None,
         return Actuators((), 'normalised', 0.0, 1.0, None, 'thrust'), (
             f'thrust is {factor:g} x^2 + {1 - factor:.3g} x of the signal x (THR_MDL_FAC)')
     return Actuators((), 'normalised', 0.0, 1.0, None, 'linear'), (
-        'rotor speed linear in the signal (THR_MDL_FAC is not set)')
+        LINEAR_SPEED)
 
 
 def _relative(signal: np.ndarray, topic: str, made: Actuators,

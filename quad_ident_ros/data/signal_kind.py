@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What kind of signals to motors values are, by their size."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from quad_ident_ros.model.motors import KINDS, TO_SPEED
@@ -11,9 +13,13 @@ LEAST = 0.1             # of full throttle, which a flight exceeds for a tenth o
 BACKWARDS = -0.999, -0.01   # of signals from -1 to 1; -1 alone may stand for off, -0.01 be noise
 MANY = 0.01             # of the signals: fewer out of a range are glitches, more another kind
 LEAST_DUTY = 10000.0    # a sixth of 65535: less lifts nothing
+ALIKE = 'pwm', 'dshot'  # kinds of the same size
 NEAR_HOVER = 0.75, 1.33  # of the hover speed: thrust coefficients are off by less than half
 APART = 1.15            # times in speed, a third in thrust: vehicle files may err by less
 FASTEST = {'speed': 4000.0, 'rpm': 60000.0}     # rad/s and rpm of rotors that fly anything
+
+LINEAR = 'linear_in'
+"""Info of a record: of what signals its commands were taken to be linear, see linear_in."""
 
 TITLES = {'speed': 'rad/s', 'rpm': 'rpm', 'pwm': 'PWM', 'normalised': 'normalised',
           'percent': 'per cent', 'duty16': 'duty', 'dshot': 'DSHOT'}
@@ -55,6 +61,42 @@ def kinds_of(values: np.ndarray, hover: float | None = None,
     elif not found:     # what it would be without a vehicle to hold it against
         found += [kind for kind in TO_SPEED if 100.0 < high < FASTEST[kind]][:1]
     return tuple(found)
+
+
+def in_newtons(values: np.ndarray, kinds: Sequence[str], weight: float, hover: float,
+               ends: tuple[float, float]) -> bool:
+    """
+    Whether signals carry a vehicle as thrusts of its rotors in N, and not as what they may be.
+
+    Args: kinds that they may be by their size; weight of the vehicle on each rotor, N; hover and
+    ends as in kinds_of.
+    """
+    on = values[np.isfinite(values) & (values > 0)]
+    usual = float(np.median(on)) if len(on) else 0.0
+    if not NEAR_HOVER[0] ** 2 < usual / weight < NEAR_HOVER[1] ** 2:
+        return False
+    full = {'normalised': 1.0, 'percent': 100.0}
+    shares = [usual / full[kind] for kind in kinds if kind in full]
+    if len(shares) < len(kinds) or (shares and not np.isfinite(ends[1])):
+        return False
+    speeds = [ends[0] + of_full * (ends[1] - ends[0]) for share in shares
+              for of_full in (share, np.sqrt(share))]
+    return not any(NEAR_HOVER[0] < speed / hover < NEAR_HOVER[1] for speed in speeds)
+
+
+def linear_in(kind: str) -> list[tuple[str, float, float]]:
+    """
+    Return (kind, a, b) of a kind and of the others of its size, for the info LINEAR.
+
+    A signal that is the share x of the range of the first is the share a + b x of the others'.
+    """
+    low, high = KINDS[kind] or (0.0, 1.0)
+    others = [other for other in (kind, *ALIKE) if kind in ALIKE or other == kind]
+    found = []
+    for other in dict.fromkeys(others):
+        least, most = KINDS[other] or (0.0, 1.0)
+        found.append((other, (low - least) / (most - least), (high - low) / (most - least)))
+    return found
 
 
 def hovers_signed(values: np.ndarray, hover: float, ends: tuple[float, float]) -> bool:

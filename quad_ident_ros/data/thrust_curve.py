@@ -7,8 +7,10 @@ import math
 
 import numpy as np
 
-ARDUPILOT = ('MOT_THST_EXPO', 'MOT_PWM_MIN', 'MOT_PWM_MAX', 'MOT_SPIN_MIN', 'MOT_SPIN_MAX')
-"""Parameters of ArduCopter that make the curve."""
+ARDUPILOT = ('MOT_THST_EXPO', 'MOT_SPIN_MIN', 'MOT_SPIN_MAX')
+"""Parameters of ArduCopter that make the curve, beside those of the range of PWM."""
+
+_DIGITAL = range(4, 8)      # of MOT_PWM_TYPE: DSHOT, whose signals are logged as 1000 to 2000
 
 
 def ardupilot_curve(parameters: Mapping[str, float]) -> dict[str, float] | None:
@@ -17,16 +19,32 @@ def ardupilot_curve(parameters: Mapping[str, float]) -> dict[str, float] | None:
 
     It takes thrust for factor x^2 + (1 - factor) x of the share x of the outputs from
     MOT_SPIN_MIN to MOT_SPIN_MAX, which are shares of MOT_PWM_MIN to MOT_PWM_MAX; factor is
-    MOT_THST_EXPO. None where the log does not have them all, or they make no curve: a MOT_PWM_MIN
-    of 0 stands for the range of the remote control.
+    MOT_THST_EXPO. None where the log does not have them all, or they make no curve.
     Source: AP_Motors_Thrust_Linearization.cpp and AP_MotorsMulticopter.cpp of ArduPilot.
     """
-    factor, low, high, begin, end = (parameters.get(name, math.nan) for name in ARDUPILOT)
+    factor, begin, end = (parameters.get(name, math.nan) for name in ARDUPILOT)
+    low, high = _range(parameters)
     if not (-1.0 <= factor <= 1.0 and 0.0 < low < high < math.inf
             and 0.0 <= begin < end <= 1.0):
         return None
     return {'minimum': low + begin * (high - low), 'maximum': low + end * (high - low),
             'factor': factor}
+
+
+def _range(parameters: Mapping[str, float]) -> tuple[float, float]:
+    """
+    Return the lowest and the highest pulse to the motors, us, nan where it is not known.
+
+    Where MOT_PWM_MIN and MOT_PWM_MAX are none, as by default until version 4.1, it is the range of
+    the throttle of the remote control.
+    """
+    channel = parameters.get('RCMAP_THROTTLE', 3.0)
+    own, remote = ([parameters.get(name, math.nan) for name in (f'{of}_MIN', f'{of}_MAX')]
+                   for of in ('MOT_PWM', f'RC{channel:g}'))
+    if 0.0 < own[0] < own[1] < math.inf:
+        return own[0], own[1]
+    return (1000.0, 2000.0) if parameters.get('MOT_PWM_TYPE') in _DIGITAL else (
+        remote[0], remote[1])
 
 
 def share_of_thrust(signals: np.ndarray, minimum: float, maximum: float,

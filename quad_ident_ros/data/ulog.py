@@ -16,12 +16,13 @@ from quad_ident_ros.data.mapping import Actuators, KINDS, Mapping
 from quad_ident_ros.data.modes import modes_from, PX4
 from quad_ident_ros.data.px4_airframe import FIRST_MOTOR, Motors, motors_of, other_kind
 from quad_ident_ros.data.px4_clock import RECEIVER, utc_of
-from quad_ident_ros.data.px4_motors import commands
+from quad_ident_ros.data.px4_motors import commands, LINEAR_SPEED
 from quad_ident_ros.data.px4_outputs import motor_outputs
 from quad_ident_ros.data.px4_position import estimated
 from quad_ident_ros.data.px4_resets import split_at_resets
 from quad_ident_ros.data.px4_states import flown
 from quad_ident_ros.data.record import FlightRecord, QUATERNION
+from quad_ident_ros.data.signal_kind import LINEAR
 from quad_ident_ros.data.split import part, SHORTEST
 from quad_ident_ros.data.streams import HELD, INTERPOLATED, join, SLOW, Stream
 from quad_ident_ros.data.topic_part import BODY_VELOCITY
@@ -88,12 +89,19 @@ def read_ulog(path: str | Path, mapping: Mapping | None = None,
     start, t, columns, joined = join(path, streams)
     record = FlightRecord(t, velocity_in_world(path, columns), {
         'name': path.stem, 'source': str(path), 'start_ns': start, 'notes': [*notes, *joined],
-        'commands': commands, 'logging': logging,
+        'commands': commands, 'logging': logging, **_linear(commands),
         'utc_ns': utc_of(data[RECEIVER], start), 'hardware': _hardware(log),
         'modes': _modes(path, data['vehicle_status'], start)})
     taken = {stream.source.removeprefix('topic ') for stream in streams
              if {'px', 'body_vx', 'qw'} & stream.columns.keys()}
     return _flights(path, record, data, taken)
+
+
+def _linear(commands: Sequence[str]) -> dict[str, list[tuple[str, float, float]]]:
+    """Return the info LINEAR of a record whose rotor speeds are linear in what a note names."""
+    said = next((note for note in commands if LINEAR_SPEED in note), '')
+    kind = 'normalised' if 'actuator_motors' in said else 'pwm'
+    return {LINEAR: [(kind, 0.0, 1.0)]} if said else {}
 
 
 def refuse_others(path: Path, log: ULog, status: dict | None) -> None:

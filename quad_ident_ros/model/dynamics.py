@@ -76,6 +76,12 @@ class Course:
         return np.concatenate([found, before], axis=1)
 
 
+IN_A_MAPPING = ('in a mapping (--mapping), which begins with: quad_ident info FILE '
+                '--write-mapping map.yaml; from a second file, put its rows into the same table, '
+                'by their time')
+"""What to do about columns that a record of others, whose names were guessed, has not."""
+
+
 def course_of(record: FlightRecord, vehicle: Vehicle, reference_voltage: float | None = None
               ) -> Course:
     """
@@ -92,8 +98,7 @@ def course_of(record: FlightRecord, vehicle: Vehicle, reference_voltage: float |
         instead = (f'give {given}, which outputs become by motors of the vehicle file, or by a '
                    'mapping with actuators (kind, order, speeds), see docs/records.md')
     elif record.info.get('notes'):      # of others, whose names were guessed
-        instead = ('name the commands of the motors in a mapping (--mapping), which begins with: '
-                   'quad_ident info FILE --write-mapping map.yaml')
+        instead = f'name the commands of the motors {IN_A_MAPPING}'
     elif len(missing) < len(INPUTS):
         instead = f'give {given}, or {", ".join(missing)} as well, beside what it has of u1 to u4'
     _refuse_without(record, names, instead)
@@ -120,8 +125,11 @@ def states_of(record: FlightRecord) -> np.ndarray:
 
     Where the record has phi, theta, psi instead of the quaternion, that is made from them.
     """
+    guessed = f'name position and attitude {IN_A_MAPPING}' if record.info.get('notes') else ''
+    _refuse_without(record, STATES[:6], guessed or 'give position and velocity')
     if record.has(*STATES[6:10]) or not record.has('phi', 'theta', 'psi'):
-        _refuse_without(record, STATES[6:10], 'give qw, qx, qy, qz, or phi, theta, psi')
+        _refuse_without(record, STATES[6:10],
+                        guessed or 'give qw, qx, qy, qz, or phi, theta, psi')
         states = record.stack(*STATES)
     else:
         attitude = quaternion_from_euler(record.stack('phi', 'theta', 'psi'))

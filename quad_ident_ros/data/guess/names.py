@@ -5,6 +5,7 @@
 import re
 
 from quad_ident_ros.data.columns import FORCE, POSITION, RATE, VELOCITY
+from quad_ident_ros.data.guess.words import in_english, without_accents
 from quad_ident_ros.data.record import QUATERNION
 
 UNIT = re.compile(r'[\[(]\s*([^\])]*)\s*[\])]\s*$')
@@ -14,7 +15,9 @@ UNITS = {'usec': 'us', 'µs': 'us', 'msec': 'ms', 'sec': 's', 'secs': 's', 'seco
          'dps': 'deg/s', '°/s': 'deg/s', 'degps': 'deg/s', 'radps': 'rad/s', '°': 'deg',
          'degrees': 'deg', 'radians': 'rad', 'm/s2': 'm/s^2', 'm/s²': 'm/s^2', 'm/s/s': 'm/s^2',
          'rad s^-1': 'rad/s', 'm s^-1': 'm/s', 'm s^-2': 'm/s^2', 'meters': 'm', 'volt': 'V',
-         'v': 'V', 'mv': 'mV', "g's": 'g'}
+         'v': 'V', 'mv': 'mV', "g's": 'g',
+         'u/min': 'rpm', 'tr/min': 'rpm', '1/min': 'rpm', 'min^-1': 'rpm', 'grad': 'deg',
+         'grad/s': 'deg/s', 'sekunden': 's'}
 NOT = re.compile(r'(^|_)(sp|setpoint|des|desired|ref|reference|target|goal|cov|covariance|var|'
                  r'std|err|error|raw|bias|offset|mag)(_|$)|^b_[awg]_')
 """Of names that are not what was measured; b_w and b_a are biases."""
@@ -92,16 +95,16 @@ BATTERY = re.compile(r'(^|_)(vbat|vbatt|v_bat|bat_v|battery|battery_voltage|volt
 
 
 def plain(name: str) -> tuple[str, str]:
-    """Return a name in small letters with _ between its parts, and the unit that it says."""
+    """Return a name in small letters and English, _ between its parts, and its unit."""
     said = ''
     match = UNIT.search(name)
     # q[0] is an entry of an array, gyro.x [deg/s] has a unit.
     if match and not match.group(1).isdigit():
         name, said = name[:match.start()], match.group(1).strip().lower()
     name = re.sub(r'([a-z0-9])([A-Z])', r'\1_\2', name.strip())
-    name = re.sub(r'[^a-z0-9]+', '_', name.lower()).strip('_')
+    name = re.sub(r'[^a-z0-9]+', '_', without_accents(name).lower()).strip('_')
     match = ENDING.search(name)
     if not said and match and len(name) > len(match.group()):
         name, said = name[:match.start()], match.group(1)
-    name = _AFTER.sub(r'_\2_\1', name)
+    name = _AFTER.sub(r'_\2_\1', in_english(name))
     return name, UNITS.get(said, said)

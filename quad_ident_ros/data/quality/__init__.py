@@ -49,7 +49,7 @@ COLUMNS = (columns.known, columns.incomplete, columns.differentiated, columns.fr
 COMPARISONS = (stale.held, stale.ended, stale.stuck, stale.marked, glitches.attitude,
                glitches.others, units.rates_in_degrees, units.euler_in_degrees, units.force_in_g,
                units.position_in_millimetres, units.speeds_in_rpm, *frames.CHECKS,
-               rotors.hover, rotors.size, thrust.carried, thrust.other_vehicle,
+               rotors.hover, rotors.size, thrust.curve, thrust.carried, thrust.other_vehicle,
                rotors.order_and_spin, moments.unit, thrust.level, clock.attitude, clock.velocity,
                clock.commands, ground.stands, gyro.bias, answer.commands, saturation.speeds,
                excitation.axes)

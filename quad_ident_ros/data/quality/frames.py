@@ -9,6 +9,7 @@ from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.once import once
 from quad_ident_ros.data.quality.series import correlation, explained, Grid, is_rather, WIDTH
 from quad_ident_ros.data.record import FlightRecord, QUATERNION
+from quad_ident_ros.gravity import GRAVITY
 from quad_ident_ros.model.attitude import conjugate, rotate
 from quad_ident_ros.model.vehicle import Vehicle
 
@@ -19,6 +20,8 @@ STRANGE = 0.5             # correlation under which position and velocity do not
 SLOW = 0.3                # m/s rms under which noise may hide that they do
 HEADING = np.radians([20, 35])  # off for a warning and an error: tilts to fit are under 29 deg
 DRAGGED = np.radians([45, 100])     # where no force is measured: drag on a circle looks alike
+LEANS, UPRIGHT = 0.9, 0.5   # correlation of the lean with the force where up is right, and wrong
+LEAN_OVER = 0.3     # s: noise of an acceleration that is twice a slope counts for little
 TURN = ('turn the world into ENU (x east, y north, z up) and the body into FLU, or say '
         'world: NED, body: FRD in a mapping')
 
@@ -152,6 +155,35 @@ def world(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     return _motion(grid, attitude)
 
 
+def y_up(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
+    """
+    Find a world whose y axis is up, with a body whose own y is up, as motion capture has them.
+
+    The thrust is along the up axis of the body: what that leans by is how the position bends.
+    """
+    grid, attitude = Grid.of(record), best_reading(record)[1]
+    if grid is None or attitude is None or not record.has('px', 'py', 'pz'):
+        return []
+    bend = grid.derivative(grid.derivative(grid.signal('px', 'py', 'pz')))
+    alike = []
+    for up in ([0.0, 0.0, 1.0], [0.0, 1.0, 0.0]):
+        level = np.flatnonzero(np.array(up) == 0.0)
+        force = bend + GRAVITY * np.array(up)
+        force /= np.linalg.norm(force, axis=1, keepdims=True)
+        lean = rotate(attitude, np.tile(up, (len(grid.t), 1)))
+        one, other = (grid.smooth(values[:, level], LEAN_OVER)[grid.good]
+                      for values in (lean, force))
+        alike.append(correlation(one - one.mean(axis=0), other - other.mean(axis=0))[0])
+    if not (alike[1] > LEANS and alike[0] < UPRIGHT):
+        return []
+    return [Finding(
+        'frame_y_up', 'error', 'position and attitude',
+        'the vehicle leans into the way that it goes only where y is the axis that points up '
+        f'(correlation {alike[1]:.2f}, with z up {alike[0]:.2f})',
+        'export it with z up, or name the columns in a mapping: py and qy the z of the file with '
+        'the other sign (unit: -m or -mm; "-1"), pz and qz its y; likewise a velocity')]
+
+
 def _motion(grid: Grid, attitude: np.ndarray) -> list[Finding]:
     """Find velocities whose changes contradict attitude and specific force."""
     if not grid.record.has('vx', 'vy', 'vz'):
@@ -268,4 +300,4 @@ def _strangers(moved: np.ndarray, velocity: np.ndarray) -> list[Finding]:
                     'say frame: world or body of the velocity in a mapping, or leave it out')]
 
 
-CHECKS = (quaternion, world, velocity_in_body, rate_in_world, signs)
+CHECKS = (y_up, quaternion, world, velocity_in_body, rate_in_world, signs)

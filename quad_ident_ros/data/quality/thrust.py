@@ -11,6 +11,7 @@ from quad_ident_ros.data.quality import rotors, units
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.series import Grid
 from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.data.signal_kind import LINEAR
 from quad_ident_ros.data.thrust_level import BY_LOG, FULL_SPEED, mass_to_carry
 from quad_ident_ros.model.vehicle import Vehicle
 
@@ -19,6 +20,11 @@ OTHER = 2.0       # times by which no scale, thrust stand or battery is off: it 
 LONGEST = 1.0     # s in all, in which motors may still follow
 MOVING = 0.2      # m/s: what stands on the ground needs no thrust
 FLYING = 0.5      # of the weight, from which on a thrust is needed
+SLOWLY = 0.3      # s: motors lag less, and noise of a derived velocity is less
+FOLLOWS = 0.9     # correlation of needed with given thrust, in whose slope noise hardly counts
+STEEP = 1.2       # times too steep or flat: drag and inflow make less of it
+CLEARER = 3.0     # times nearer in its slope, the logarithm, another reading is the right one
+NEAR = 1.6        # times too much or too little thrust that the right one gives at most
 
 
 def level(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
@@ -76,14 +82,70 @@ def other_vehicle(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding
         'name the vehicle that flew with --vehicle, or weigh it and measure its thrust')]
 
 
+def curve(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
+    """
+    Find signals to the motors that are shares of thrust and were taken for shares of speed.
+
+    Taken so, they would carry the vehicle, and thrust would follow them as it should; as they were
+    taken, it is too flat or too steep.
+    """
+    readings, thrust = record.info.get(LINEAR, ()), _Thrust.of(record, vehicle)
+    if not readings or thrust is None or vehicle is None:
+        return []
+    # Where no file has the speed at full signal, the weight determines it, for any reading.
+    level = record.info.get(FULL_SPEED)
+    low, high = vehicle.speed_min, level or vehicle.speed_max
+    if not np.isfinite(high):
+        return []
+    share = (thrust.grid.held(*record.numbered('cmd')) - low) / (high - low)
+    slope = thrust.fit(thrust.given)[0]
+    if 1.0 / STEEP < slope < STEEP:
+        return []
+    for kind, least, factor in readings:
+        squared = low ** 2 + np.clip(least + factor * share, 0, 1) * (high ** 2 - low ** 2)
+        right, ratio = thrust.fit(thrust.per_speed * np.sum(squared, axis=1))
+        if (CLEARER * abs(np.log(right)) < abs(np.log(slope))
+                and (level or 1.0 / NEAR < ratio < NEAR)):
+            return [Finding(
+                'thrust_curve', 'error', 'commands',
+                f'thrust does not follow the square of the rotor speeds (its changes are '
+                f'{slope:.2g} times as large), but the signals themselves: they are shares of '
+                'thrust, not of speed',
+                f'say so in a mapping (--mapping): actuators: {{kind: {kind}, curve: thrust}}, or '
+                f'in the vehicle file: motors: {{kind: {kind}, thrust: {{exponent: 1}}}}')]
+    return []
+
+
 @dataclass(frozen=True, eq=False)
 class _Thrust:
-    """Thrust over mass (N,) m/s^2 at the times of a grid: given, needed, and where it flies."""
+    """
+    Thrust over mass (N,) m/s^2 at the times of a grid: given, needed, and where it flies.
+
+    per_speed: thrust over mass of one rotor over its speed squared.
+    """
 
     grid: Grid
     given: np.ndarray
     needed: np.ndarray
     flying: np.ndarray
+    per_speed: float
+
+    def fit(self, given: np.ndarray) -> tuple[float, float]:
+        """
+        Return how much more steeply the needed thrust changes than one given, and their ratio.
+
+        Slopes are of logarithms, 1 where they do not tell.
+        """
+        use = self.flying & (given > 0)
+        if use.sum() * self.grid.period < LONGEST:
+            return 1.0, 0.0
+        one, other = (np.log(self.grid.smooth(values[:, None], SLOWLY)[use, 0])
+                      for values in (np.maximum(self.needed, 1e-9), np.maximum(given, 1e-9)))
+        both = np.cov(one, other)
+        scale = float(np.sqrt(both[0, 0] * both[1, 1]))
+        told = scale > 0.0 and both[0, 1] > FOLLOWS * scale
+        return (float(np.sqrt(both[0, 0] / both[1, 1])) if told else 1.0,
+                float(np.exp(np.median(other - one))))
 
     @classmethod
     def of(cls, record: FlightRecord, vehicle: Vehicle | None) -> '_Thrust | None':
@@ -96,7 +158,7 @@ class _Thrust:
         velocity = grid.signal('vx', 'vy', 'vz')
         needed = np.linalg.norm(grid.derivative(velocity) + [0.0, 0.0, vehicle.gravity], axis=1)
         speed = np.linalg.norm(grid.smooth(velocity), axis=1)
-        given = (vehicle.thrust_coefficient / mass_to_carry(vehicle)
-                 * np.sum(grid.held(*names) ** 2, axis=1))
-        return cls(grid, given, needed,
-                   grid.good & (speed > MOVING) & (needed > FLYING * vehicle.gravity))
+        per_speed = vehicle.thrust_coefficient / mass_to_carry(vehicle)
+        given = per_speed * np.sum(grid.held(*names) ** 2, axis=1)
+        return cls(grid, given, needed, grid.good & (speed > MOVING)
+                   & (needed > FLYING * vehicle.gravity), per_speed)

@@ -25,8 +25,8 @@ def recognises(path: Path, start: bytes) -> bool:
 
 def read(path: Path, mapping: Mapping | None = None, vehicle: Vehicle | None = None
          ) -> list[FlightRecord]:
-    """Return the flight record of a log."""
-    return [read_ardupilot(path, mapping)]
+    """Return the flight records of a log."""
+    return read_ardupilot(path, mapping)
 
 
 READER = Reader('ardupilot', 'a log of ArduPilot (DataFlash)', recognises, read, contents,

@@ -4,17 +4,18 @@
 
 from dataclasses import replace
 import random
+import re
 import sys
 
 from dataflash_files import copter, dataflash, TYPES
-from flightmaker import VEHICLE
+from flightmaker import flight, VEHICLE
 from fuzz_readers import mutate
 import numpy as np
 import pytest
 from reader_checks import CMD, refused, SMALL
 
 from quad_ident_ros.data.dataflash import read_messages
-from quad_ident_ros.data.load import contents_of, load
+from quad_ident_ros.data.load import contents_of, load, load_all
 from quad_ident_ros.data.mapping import mapping_from
 from quad_ident_ros.errors import InputError
 
@@ -85,6 +86,17 @@ def test_the_thrust_curve_of_the_parameters_tells_the_rotor_speeds(tmp_path):
         np.testing.assert_allclose(read.columns['cmd1'], linear)
 
 
+@pytest.mark.parametrize(('kind', 'remote', 'low', 'high'), [
+    (0, (1100, 1900), 1220, 1860), (6, (1100, 1900), 1150, 1950)])
+def test_without_a_range_of_pwm_it_is_that_of_the_remote_control_but_for_dshot(
+        tmp_path, kind, remote, low, high):
+    told = {'MOT_PWM_MIN': 0, 'MOT_PWM_MAX': 0, 'MOT_SPIN_MIN': 0.15, 'MOT_SPIN_MAX': 0.95,
+            'MOT_PWM_TYPE': kind, 'RCMAP_THROTTLE': 4, 'RC4_MIN': remote[0], 'RC4_MAX': remote[1]}
+    messages = [*copter(SMALL, OUTPUTS), *(('PARM', (1, *one)) for one in told.items())]
+    curve = load(file(tmp_path, messages)).info['motors']['curve']
+    assert (curve['minimum'], curve['maximum']) == pytest.approx((low, high))
+
+
 def test_without_the_parameters_all_used_outputs_are_kept(tmp_path):
     messages = without(copter(SMALL, OUTPUTS, channels=(1, 2, 3, 6)), 'PARM')
     read = load(file(tmp_path, messages))
@@ -139,6 +151,81 @@ def test_an_instance_is_chosen_by_the_mapping(tmp_path):
     np.testing.assert_array_equal(read.stack('px', 'pz')[0], [9, -9])
     refused(path, 'no IMU 2', '0, 1', mapping=mapping_from({'instances': {'IMU': 2}}, 'm'))
     refused(path, "'BARO' is not read", mapping=mapping_from({'instances': {'BARO': 0}}, 'm'))
+
+
+STATUS = {**TYPES, 'XKF4': (80, 'QBbb', 'TimeUS,C,SS,PI')}
+
+
+def test_the_lane_is_read_by_which_the_vehicle_flew(tmp_path):
+    messages = copter(SMALL, OUTPUTS)
+    # As if the second lane were the good one.
+    swapped = [(name, (values[0], 1 - values[1], *values[2:])) if name in ('XKF1', 'XKQ')
+               else (name, values) for name, values in messages]
+    told = [('XKF4', (values[0], 0, 0, 1)) for name, values in messages if name == 'ATT']
+    read = load(file(tmp_path, dataflash([*swapped, *told], STATUS)))
+    np.testing.assert_allclose(read.stack('px', 'vz'), SMALL.stack('px', 'vz'), atol=2e-7)
+    same = np.sum(read.stack(*QUATERNION) * SMALL.stack(*QUATERNION), axis=1)
+    np.testing.assert_allclose(np.abs(same), 1.0, atol=1e-12)
+    assert any('XKF1: lane 1 of 2, the primary' in note for note in read.info['notes'])
+    # A mapping takes precedence; a lane that is not logged cannot be read.
+    other = load(file(tmp_path, dataflash([*swapped, *told], STATUS)),
+                 mapping_from({'instances': {'XKF1': 0}}, 'm'))
+    assert other.columns['px'][0] == 9
+    third = [('XKF4', (stamp, 0, 0, 2)) for _, (stamp, *_) in told]
+    read = load(file(tmp_path, dataflash([*messages, *third], STATUS)))
+    assert any('2, is not logged' in note for note in read.info['notes'])
+
+
+def test_a_flight_is_split_where_the_primary_lane_changes(tmp_path):
+    record = flight(seconds=12.0, rate=50.0)
+    outputs = 1000 + 1000 * (record.stack(*CMD) - 100) / 1600
+    messages = copter(record, outputs)
+    middle = np.median([values[0] for name, values in messages if name == 'ATT'])
+    swapped = [(name, (values[0], 1 - values[1], *values[2:]))
+               if name in ('XKF1', 'XKQ') and values[0] >= middle else (name, values)
+               for name, values in messages]
+    told = [('XKF4', (values[0], 0, 0, values[0] >= middle)) for name, values in messages
+            if name == 'ATT']
+    pieces = load_all(file(tmp_path, dataflash([*swapped, *told], STATUS)))
+    assert [round(float(np.ptp(piece.t))) for piece in pieces] == [6, 6]
+    for piece in pieces:
+        assert np.abs(piece.columns['px']).max() < 5        # the other lane says 9
+        assert 'from lane 0 to lane 1' in ' '.join(piece.info['notes'])
+
+
+def test_lanes_and_sensors_of_version_4_0_have_names_of_their_own(tmp_path):
+    names = {('XKF1', 0): 'NKF1', ('XKF1', 1): 'NKF6', ('XKQ', 0): 'NKQ1', ('XKQ', 1): 'NKQ2',
+             ('IMU', 0): 'IMU', ('IMU', 1): 'IMU2'}
+    types = {name: one for name, one in TYPES.items() if name not in ('XKF1', 'XKQ', 'IMU')}
+    for k, ((name, _), old) in enumerate(names.items()):
+        _, letters, fields = TYPES[name]
+        types[old] = 90 + k, letters.replace('QB', 'Q'), re.sub(',[CI],', ',', fields)
+    types['NKF4'] = 99, 'Qbb', 'TimeUS,SS,PI'
+    messages = []
+    for name, values in copter(SMALL, OUTPUTS):
+        if (name, values[1]) in names:      # the second lane and sensor are the good ones
+            number = 1 - values[1]
+            messages.append((names[name, number], (values[0], *values[2:])))
+        else:
+            messages.append((name, values))
+    messages += [('NKF4', (values[0], 0, 1)) for name, values in messages if name == 'ATT']
+    path = file(tmp_path, dataflash(messages, types))
+    read = load(path, mapping_from({'instances': {'IMU': 1}}, 'm'))
+    for columns in (('px', 'vz'), ('wx', 'ay')):
+        np.testing.assert_allclose(read.stack(*columns), SMALL.stack(*columns), atol=3e-6)
+    roles = {one.name: one.roles for one in contents_of(path)[1]}
+    assert roles['NKF6'] == ('position', 'velocity')
+
+
+def test_of_two_filters_that_is_read_by_which_the_vehicle_flew(tmp_path):
+    types = {**TYPES, 'NKF1': (90, *TYPES['XKF1'][1:])}
+    messages = copter(SMALL, OUTPUTS)
+    second = [('NKF1', (*values[:8], *(np.array(values[8:]) + 5)))
+              for name, values in messages if name == 'XKF1' and values[1] == 0]
+    for kind, more in ((3, 0), (2, 5)):
+        told = [('PARM', (1, 'AHRS_EKF_TYPE', kind))]
+        read = load(file(tmp_path, dataflash([*messages, *second, *told], types)))
+        np.testing.assert_allclose(read.columns['px'], SMALL.columns['px'] + more, atol=1e-6)
 
 
 @pytest.mark.parametrize(('banner', 'name'), [

@@ -10,10 +10,11 @@ from flightmaker import flight, VEHICLE
 import numpy as np
 import pytest
 from usd_files import crazyflie_events, usdlog
+import yaml
 
 from quad_ident_ros.data.csv import write_csv
 from quad_ident_ros.data.load import load
-from quad_ident_ros.data.mapping import Actuators
+from quad_ident_ros.data.mapping import Actuators, Mapping
 from quad_ident_ros.data.outputs import commanded
 from quad_ident_ros.data.quality import cautions, findings
 from quad_ident_ros.data.record import FlightRecord
@@ -257,3 +258,61 @@ def test_how_well_the_motors_are_known_says_nothing_of_commands_in_rad_s():
         taken = take_in(records, vehicle, None, RULES)
         assert prior_sizes(taken.vehicle, RULES.prior_width)[scale] == pytest.approx(std, rel=0.1)
     assert usual[scale] > 0.1
+
+
+SHARES_OF_THRUST = (SPEEDS ** 2 - 100 ** 2) / (1700 ** 2 - 100 ** 2)
+
+
+def curves(record, vehicle=VEHICLE):
+    """Return the Findings that signals are shares of thrust."""
+    return [found for found in findings(record, vehicle) if found.code == 'thrust_curve']
+
+
+@pytest.mark.parametrize('kind', ['normalised', 'percent', 'pwm', 'duty16'])
+def test_shares_of_thrust_that_were_taken_for_speeds_are_told_by_the_thrust(tmp_path, kind):
+    low, high = KINDS[kind]
+    for shares, known in ((SHARES_OF_THRUST, True), (SHARES, False)):
+        values = low + shares * (high - low)
+        path = with_outputs(tmp_path, np.round(values) if high > 1000 else values)
+        found = curves(load(path, vehicle=VEHICLE))
+        assert [one.severity for one in found] == ['error'] * known
+        assert all(f'actuators: {{kind: {kind}, curve: thrust}}' in one.remedy for one in found)
+    values = low + SHARES_OF_THRUST * (high - low)
+    path = with_outputs(tmp_path, values)
+    # As the remedy says it, in a mapping or in the vehicle file.
+    told = replace(VEHICLE, motors=motors_from('v', {'kind': kind, 'thrust': {'exponent': 1}}))
+    for read in (load(path, Mapping(actuators=Actuators(kind=kind, curve='thrust')), VEHICLE),
+                 load(path, vehicle=told)):
+        assert not curves(read)
+        hover = np.median(SPEEDS)
+        assert np.median(read.stack(*CMD)) == pytest.approx(hover, rel=0.01)
+
+
+def test_shares_of_thrust_as_pwm_are_not_taken_for_dshot(tmp_path):
+    """Their size is that of DSHOT near hover; how the thrust changes with them is not."""
+    weak = replace(VEHICLE, speed_max=float(SPEEDS.max()) * 1.2, speed_min=0.0)
+    outputs = np.round(1000 + 1000 * (SPEEDS / weak.speed_max) ** 2)
+    read = load(with_outputs(tmp_path, outputs), vehicle=weak)
+    assert 'DSHOT' in str(read.info['commands'])
+    [found] = curves(read, weak)
+    assert 'kind: pwm, curve: thrust' in found.remedy
+
+
+def test_without_the_speed_at_full_signal_shares_of_thrust_are_told_as_well(tmp_path):
+    unknown = replace(VEHICLE, speed_max=np.inf)
+    for shares, known in ((SHARES_OF_THRUST, True), (SHARES, False)):
+        read = load(with_outputs(tmp_path, shares), vehicle=replace(unknown, speed_min=0.0))
+        assert len(curves(read, unknown)) == known
+
+
+@pytest.mark.parametrize('size', [1.0, 4.0, 0.05])
+def test_thrusts_in_newtons_are_refused_with_the_motors_that_read_them(tmp_path, size):
+    """By their size alone they are of no kind, per cent or normalised."""
+    made = replace(VEHICLE, mass=size * VEHICLE.mass,
+                   thrust_coefficient=size * VEHICLE.thrust_coefficient)
+    path = with_outputs(tmp_path, made.thrust_coefficient * SPEEDS ** 2)
+    with pytest.raises(InputError, match='thrusts of its rotors in N') as caught:
+        load(path, vehicle=made)
+    told = yaml.safe_load(str(caught.value).split('motors: ')[1])
+    read = load(path, vehicle=replace(made, motors=motors_from('v', told)))
+    np.testing.assert_allclose(read.stack(*CMD), SPEEDS, rtol=1e-6)

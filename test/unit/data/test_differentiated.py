@@ -93,7 +93,7 @@ def test_differences_of_rows_give_way_to_cubics(kind, lost):
     assert made.info[DIFFERENTIATED] == ('velocity', 'rate')
     for names in (V, W):
         error, before = (np.std(one.stack(*names) - truth.stack(*names)) for one in (made, rough))
-        # Of 11 points a cubic's slope has 0.25 of the noise over a period, a difference 0.71 or more.
+        # Of 11 points a cubic's slope has 0.25 of the noise over a period, a difference 0.71.
         assert error < 0.4 * before
     for one in (rough, made):
         said = [found for found in findings(one) if found.code == 'differentiated']

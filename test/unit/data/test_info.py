@@ -290,3 +290,13 @@ def test_the_share_of_saturation_is_that_of_what_flies():
     assert [one['message'].split(' %')[0] for one in told if 'speed_min' in one['message']] == []
     [share] = [float(one['message'].split(' %')[0]) for one in told]
     assert share == pytest.approx(100 * 0.2 / 8.0, rel=0.15)
+
+
+def test_a_record_without_velocity_has_the_errors_for_which_diagnose_refuses_it():
+    record = flight(seconds=10.0, noise=0.1)
+    wrong = {f'cmd{k}': record.columns[f'cmd{5 - k}'] for k in range(1, 5)}
+    gone = dict.fromkeys(('vx', 'vy', 'vz', 'wx', 'wy', 'wz', 'ax', 'ay', 'az'))
+    told = summarise(changed(record, **wrong, **gone), vehicle=VEHICLE)['findings']
+    assert 'rotor_order' in [one['code'] for one in told if one['severity'] == 'error']
+    right = summarise(changed(record, **gone), vehicle=VEHICLE)['findings']
+    assert not [one for one in right if one['severity'] == 'error']

@@ -16,8 +16,9 @@ from quad_ident_ros.data.motor_layouts import layout
 from quad_ident_ros.data.motor_order import order_of
 from quad_ident_ros.model.vehicle import Rotor
 
-NAMES = ('quad x', 'quad +', 'hexa x', 'hexa +', 'octo x', 'octo +', 'coaxial octo x',
-         'coaxial octo +')
+NAMES = ('quad x', 'quad +', 'quad x of Betaflight', 'quad x of Betaflight, turning outwards',
+         'quad x of DJI', 'quad x, clockwise', 'hexa x', 'hexa +', 'octo x',
+         'octo +', 'coaxial octo x', 'coaxial octo +')
 SPEEDS = np.linspace(0.30, 0.65, 8)     # a share of each motor's own, so that none is confused
 
 
@@ -86,6 +87,7 @@ def test_a_coaxial_hexacopter_of_px4_is_not_taken_for_another(tmp_path):
 
 
 @pytest.mark.parametrize('frame, name', [
+    ((1, 12), 'quad x of Betaflight'), ((1, 13), 'quad x of DJI'), ((1, 14), 'quad x, clockwise'),
     ((2, 1), 'hexa x'), ((2, 0), 'hexa +'), ((3, 1), 'octo x'), ((3, 0), 'octo +'),
     ((4, 1), 'coaxial octo x')])
 def test_frames_of_ardupilot_are_told_by_their_class_and_type(tmp_path, frame, name):

@@ -33,7 +33,7 @@ import yaml
 from quad_ident_ros.cli.main import main
 from quad_ident_ros.data.load import contents_of, load, load_all
 from quad_ident_ros.data.mapping import mapping_from
-from quad_ident_ros.data.quality import cautions
+from quad_ident_ros.data.quality import cautions, findings
 from quad_ident_ros.data.split import joined, part
 from quad_ident_ros.data.thrust_level import FULL_SPEED
 from quad_ident_ros.errors import InputError
@@ -470,3 +470,14 @@ def test_a_real_log_is_cut_to_its_flight():
     assert 'SDLOG_PROFILE' in notes(read) and 'rpm of esc_status' in notes(read)
     for name in ('sample', 'sample_logging_tagged_and_default_params'):
         refused(path.with_name(f'{name}.ulg'), 'never armed')
+
+
+def test_shares_of_thrust_without_a_curve_in_the_parameters_are_told(tmp_path):
+    """THR_MDL_FAC is 0 both where the speed is linear in the signal and where thrust is."""
+    record = flight(seconds=4.0, noise=0.0)
+    for curve, known in (('linear', False), ('thrust', True)):
+        path = log(tmp_path, log_of(record, motors=controls(record, curve)))
+        found = [one for one in findings(load(path, vehicle=VEHICLE), VEHICLE)
+                 if one.code == 'thrust_curve']
+        assert len(found) == known
+        assert all('kind: normalised, curve: thrust' in one.remedy for one in found)

@@ -19,10 +19,13 @@ from reader_checks import refused
 from table_files import FORCE, named, PLACE, Q, RATE, SPEED, table
 
 from quad_ident_ros.data.columns import from_euler
+from quad_ident_ros.data.differentiated import with_motion
 from quad_ident_ros.data.load import load, load_all
 from quad_ident_ros.data.mapping import mapping_from
+from quad_ident_ros.data.quality import findings
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.attitude import euler_from_quaternion, product
+from quad_ident_ros.model.dynamics import course_of, states_of
 
 FLIGHT = flight(seconds=10.0, rate=100.0)
 T = FLIGHT.t
@@ -503,3 +506,86 @@ def test_counts_beside_seconds_are_no_part_of_them(tmp_path):
     read = load(table(tmp_path, found))
     same(read, PLACE)
     assert not any('one time' in note for note in read.info['notes'])
+
+
+GERMAN = ('Zeit [s]', 'Position {} [m]', 'Geschwindigkeit {} [m/s]',
+          ('Rollwinkel [°]', 'Nickwinkel [°]', 'Gierwinkel [°]'), 'Drehrate {} [°/s]',
+          'Motor {} [U/min]', 'Batteriespannung [V]')
+FRENCH = ('Temps (s)', 'Position {} (m)', 'Vitesse {} (m/s)',
+          ('Roulis (°)', 'Tangage (°)', 'Lacet (°)'), 'Vitesse de rotation {} (°/s)',
+          'Moteur {} (tr/min)', 'Tension de batterie (V)')
+
+
+@pytest.mark.parametrize('names', [GERMAN, FRENCH])
+@pytest.mark.parametrize('encoding', ['utf-8-sig', 'cp1252'])
+def test_german_and_french_headings_are_known(tmp_path, names, encoding):
+    time, place, speed, angles, rate, motor, voltage = names
+    q = FLIGHT.stack(*Q)
+    found = {time: T, **named([place.format(axis) for axis in 'XYZ'], FLIGHT.stack(*PLACE)),
+             **named([speed.format(axis) for axis in 'XYZ'], FLIGHT.stack(*SPEED)),
+             **named(angles, np.degrees(euler_from_quaternion(q))),
+             **named([rate.format(axis) for axis in 'xyz'], np.degrees(FLIGHT.stack(*RATE))),
+             **named([motor.format(k) for k in range(1, 5)], FLIGHT.stack(*CMD) * 30 / np.pi),
+             voltage: FLIGHT.columns['vbat']}
+    path = table(tmp_path, found, separator=';', comma=True)
+    path.write_bytes(path.read_bytes().decode().encode(encoding))
+    read = load(path, vehicle=VEHICLE)
+    same(read, PLACE, SPEED, Q, RATE, CMD, ('vbat',))
+
+
+def test_what_was_asked_for_is_told_from_what_was_measured_in_german(tmp_path):
+    found = {'Zeit': T, **named([f'Soll-Position {axis}' for axis in 'xyz'],
+                                FLIGHT.stack(*PLACE) + 1),
+             **named([f'Ist-Position {axis}' for axis in 'xyz'], FLIGHT.stack(*PLACE)),
+             **columns('q', 'wxyz', Q)}
+    same(load(table(tmp_path, found)), PLACE)
+
+
+def test_german_places_of_motors_are_known(tmp_path):
+    corners = 'Hinten links', 'Vorne rechts', 'Hinten rechts', 'Vorne links'
+    order = 2, 0, 1, 3      # of VEHICLE's rotors: front right, rear right, rear left, front left
+    found = {'Zeit': T, **columns('', 'xyz', PLACE), **columns('q', 'wxyz', Q),
+             **{f'Motor {corner}': 1000 + FLIGHT.columns[CMD[k]] / 2
+                for corner, k in zip(corners, order, strict=True)}}
+    outputs = load(table(tmp_path, found)).stack('output1', 'output2', 'output3', 'output4')
+    np.testing.assert_allclose(outputs, 1000 + FLIGHT.stack(*CMD) / 2)
+
+
+def test_states_and_commands_in_two_files_say_the_way_out_which_works(tmp_path):
+    states = {'time': T, **columns('', 'xyz', PLACE), **columns('q', 'wxyz', Q)}
+    motors = {'time': T, **columns('m', '1234', CMD)}
+    for found, what in ((states, 'commands of the motors'), (motors, 'position and attitude')):
+        record = load(table(tmp_path, found), vehicle=VEHICLE)
+        with pytest.raises(InputError, match=f'{what} in a mapping .* second file, put its rows'):
+            states_of(with_motion(record))
+            course_of(record, VEHICLE)
+    rows = len(T)
+    none = np.full(rows, np.nan)
+    beside = {**{name: np.append(values, none) for name, values in states.items()},
+              **{name: np.append(none, values) for name, values in motors.items()},
+              'time': np.append(T, T + 0.002)}
+    order = np.argsort(beside['time'])
+    joined = {name: values[order] for name, values in beside.items()}
+    assert load(table(tmp_path, joined), vehicle=VEHICLE).has('px', 'qw', 'cmd4')
+
+
+@pytest.mark.parametrize('noise', [0.0, 1.0])
+def test_a_world_with_y_up_is_told_and_the_mapping_of_the_remedy_reads_it(tmp_path, noise):
+    record = flight(seconds=10.0, rate=100.0, noise=noise)
+    (x, y, z), (w, i, j, k) = 1000 * record.stack(*PLACE).T, record.stack(*Q).T
+    found = {'time': T, **named(['x', 'y', 'z'], np.column_stack([x, z, -y])),
+             **named(['qx', 'qy', 'qz', 'qw'], np.column_stack([i, k, -j, w])),
+             **columns('m', '1234', CMD)}
+    path = table(tmp_path, found)
+    [told] = [one for one in findings(load(path, vehicle=VEHICLE), VEHICLE)
+              if one.code == 'frame_y_up']
+    assert told.severity == 'error' and 'py and qy the z of the file' in told.remedy
+    mapping = mapping_from({'columns': {
+        't': 'time', 'px': {'column': 'x', 'unit': 'mm'}, 'py': {'column': 'z', 'unit': '-mm'},
+        'pz': {'column': 'y', 'unit': 'mm'}, 'qw': 'qw', 'qx': 'qx',
+        'qy': {'column': 'qz', 'unit': '-1'}, 'qz': 'qy'}}, 'm')
+    read = load(path, mapping)
+    np.testing.assert_allclose(read.stack(*PLACE), record.stack(*PLACE), atol=1e-9)
+    assert 'frame_y_up' not in [one.code for one in findings(read, VEHICLE)]
+    for right in (record, FLIGHT):
+        assert 'frame_y_up' not in [one.code for one in findings(right, VEHICLE)]
