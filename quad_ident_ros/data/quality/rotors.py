@@ -23,7 +23,7 @@ CHANCE = 4.0              # standard errors of a correlation of noise (one over 
                           # number of independent samples)
 PART = 0.5                # of the correlation of the best spins, from which on others may be
                           # right: two wrong ones of four have none of it, of six a third
-LATEST = 0.08             # s, motors follow their commands within
+LATEST = 0.08             # s, motors follow their commands within; clocks are as far apart
 ROUNDING = 1e-12          # of a power: less counts as 0
 COMPACT, WIDE = 0.01, 3.0   # moments of inertia over mass arm^2, beyond which no vehicle is built:
                             # those of known quadrotors lie between 0.16 and 0.32
@@ -111,8 +111,8 @@ class _Evidence:
     What a flight says of the order of its rotors.
 
     moment (N, 3) on the body and squared commands (N, n) at the times of a grid; lag: samples
-    that the moment comes later; scores {order: mean correlation of roll and pitch}; declared: the
-    order of the vehicle file.
+    that the moment comes later; scores {order: mean correlation of roll and pitch at the lag that
+    suits it}; declared: the order of the vehicle file.
     """
 
     grid: Grid
@@ -138,10 +138,11 @@ def _evidence(record: FlightRecord, vehicle: Vehicle | None) -> _Evidence | None
               + np.cross(rate, rate @ inertia))
     squared = grid.smooth(grid.held(*names) ** 2)
     position = np.array([rotor.position for rotor in vehicle.rotors])
-    fast = _fast(grid, moment), _fast(grid, squared)
-    lag, scores = max((_scores(grid, *fast, position, shift) for shift in
-                       range(round(LATEST / grid.period) + 1)),
-                      key=lambda entry: max(entry[1].values()))
+    fast, most = (_fast(grid, moment), _fast(grid, squared)), round(LATEST / grid.period)
+    by_lag = {lag: _scores(grid, *fast, position, lag) for lag in range(-most, most + 1)}
+    # Each order where it fits best: at the lag of another one a good order may fit badly.
+    scores = {order: max(one[order] for one in by_lag.values()) for order in by_lag[0]}
+    lag = max(by_lag, key=lambda one: max(by_lag[one].values()))
     return _Evidence(grid, moment, squared, lag, scores, tuple(range(len(names))))
 
 
@@ -150,24 +151,24 @@ def _fast(grid: Grid, signal: np.ndarray, slow: float = SLOW) -> np.ndarray:
 
 
 def _scores(grid: Grid, moment: np.ndarray, squared: np.ndarray, position: np.ndarray, lag: int
-            ) -> tuple[int, dict[tuple[int, ...], float]]:
-    """Return lag and order -> mean correlation over roll and pitch."""
+            ) -> dict[tuple[int, ...], float]:
+    """Return {order: mean correlation over roll and pitch} at a lag."""
     target, drive = _aligned(grid, moment[:, :2], squared, lag)
     # Moments of thrust: y F about x, -x F about y.
     arms = np.stack([position[:, 1], -position[:, 0]])
-    scores = {}
     covariance, cross = drive.T @ drive, target.T @ drive
     power = np.sum(target ** 2, axis=0)
     # Of an axis that is not moved there is rounding alone, which correlates with anything.
     least = ROUNDING * np.trace(covariance) * np.sum(arms ** 2, axis=1)
     moved = power > ROUNDING * power.max(initial=0.0)
-    for order in permutations(range(len(position))):
-        effect = arms[:, list(order)]
-        size = np.einsum('ai,ij,aj->a', effect, covariance, effect)
-        told = moved & (size > least)
-        product = np.einsum('ai,ai->a', effect, cross)[told]
-        scores[order] = float(np.sum(product / np.sqrt(size[told] * power[told]))) / len(arms)
-    return lag, scores
+    orders = list(permutations(range(len(position))))
+    effect = arms[:, np.array(orders)]
+    size = np.sum(effect @ covariance * effect, axis=-1)
+    told = moved[:, None] & (size > least[:, None])
+    scale = np.sqrt(np.where(told, size * power[:, None], 1.0))
+    each = np.where(told, np.einsum('aki,ai->ak', effect, cross) / scale, 0.0)
+    scores = dict(zip(orders, (each.sum(axis=0) / len(arms)).tolist(), strict=True))
+    return scores
 
 
 def _spin_scores(told: _Evidence, spins: Sequence[int]) -> dict[tuple[int, ...], float]:
@@ -213,6 +214,6 @@ def _aligned(grid: Grid, moment: np.ndarray, squared: np.ndarray, lag: int
              ) -> tuple[np.ndarray, np.ndarray]:
     """Return moments and the commands lag samples before, both about their means."""
     index = np.flatnonzero(grid.good)
-    index = index[index >= lag]
+    index = index[(index >= lag) & (index - lag < len(squared))]
     target, drive = moment[index], squared[index - lag]
     return target - target.mean(axis=0), drive - drive.mean(axis=0)

@@ -11,12 +11,14 @@ import numpy as np
 import pytest
 from quality_records import CMD, named
 from real import needs_real_flights, real_flight, real_vehicle
+from scipy.spatial.transform import Rotation
 
 from quad_ident_ros.cli.main import main
 from quad_ident_ros.data.csv import write_csv
 from quad_ident_ros.data.load import load
 from quad_ident_ros.data.mapping import mapping_from
 from quad_ident_ros.data.quality import cautions, findings, refuted
+from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import SENSORS
@@ -224,3 +226,40 @@ def test_a_hover_with_the_file_of_a_heavier_vehicle_is_not_just_on_the_ground():
     record = fly_closed_loop(load_vehicle('hummingbird'), {}, 'hover', duration=10.0)
     [found] = [one for one in findings(record, load_vehicle('iris')) if one.code == 'ground']
     assert 'never carry iris' in found.message and '--vehicle' in found.remedy
+
+
+def precessing(hertz, late):
+    """Return a record of VEHICLE, whose tilt goes round, with states stamped late by so many s."""
+    rate, fine = 100.0, 10
+    t = np.arange(1000) / rate
+
+    def turn(at):
+        return np.column_stack([np.cos(2.0 * np.pi * hertz * at), np.sin(2.0 * np.pi * hertz * at),
+                                0.3 * np.sin(0.7 * at)])
+
+    attitude, q = Rotation.identity(), []
+    for k in range(len(t) * fine):
+        if k % fine == 0:
+            q.append(attitude.as_quat())
+        attitude *= Rotation.from_rotvec(turn(np.array([(k + 0.5) / (rate * fine)]))[0]
+                                         / (rate * fine))
+    at = t + 0.5 / rate + late
+    inertia, spins = np.array(VEHICLE.inertia), [rotor.spin for rotor in VEHICLE.rotors]
+    moment = (inertia * (turn(at + 1e-4) - turn(at - 1e-4)) / 2e-4
+              + np.cross(turn(at), inertia * turn(at)))
+    positions = np.array([rotor.position for rotor in VEHICLE.rotors])
+    kf, km = VEHICLE.thrust_coefficient, VEHICLE.torque_coefficient
+    effect = np.stack([np.full(4, kf), kf * positions[:, 1], -kf * positions[:, 0],
+                       km * np.array(spins)])
+    weight = np.full(len(t), VEHICLE.mass * VEHICLE.gravity)
+    squared = np.linalg.solve(effect, np.column_stack([weight, moment]).T)
+    return FlightRecord(t, {**named(('qx', 'qy', 'qz', 'qw'), np.array(q)),
+                            **named(('wx', 'wy', 'wz'), turn(t)),
+                            **named(CMD, np.sqrt(squared).T)}, {'name': 'precessing'})
+
+
+@pytest.mark.parametrize('hertz', [1.6, 2.5])
+@pytest.mark.parametrize('late', [-0.06, 0.0, 0.06])
+def test_a_clock_that_is_off_is_no_other_order_of_the_rotors(hertz, late):
+    """Where the tilt goes round, rotors moved on by one act as a quarter of a turn later."""
+    assert 'rotor_order' not in [one.code for one in findings(precessing(hertz, late), VEHICLE)]
