@@ -87,7 +87,7 @@ def test_an_attitude_that_is_late_and_slow_does_not_jump(trajectory):
         vehicle = load_vehicle(name)
         record = fly_closed_loop(vehicle, {}, trajectory, duration=20.0, seed=2, noise=sensors)
         assert not codes(record, vehicle) - {'stale', 'clock_offset', 'clock_drift', 'gap',
-                                             'excitation'}
+                                             'excitation', 'differentiated'}
 
 
 def test_a_finding_says_what_where_and_how_to_mend_it():
