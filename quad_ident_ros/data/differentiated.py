@@ -9,14 +9,14 @@ least squares through the samples around it (Savitzky and Golay, Analytical Chem
 also where these are not evenly spaced.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from quad_ident_ros.data.record import EULER, FlightRecord, QUATERNION
-from quad_ident_ros.model.attitude import quaternion_from_euler
+from quad_ident_ros.model.attitude import euler_from_quaternion, quaternion_from_euler
 
 POSITION, VELOCITY = ('px', 'py', 'pz'), ('vx', 'vy', 'vz')
 RATE = ('wx', 'wy', 'wz')
@@ -32,6 +32,7 @@ _TABLE = 220_000    # samples around others, that are worked on at once
 # noise, as no sensor's is by chance; rows that were lost or rounded are the rest. Noise below
 # QUIET (m/s, rad/s) is left as it is: no cubic is better than that, nor than a simulation's.
 ALIKE, MOSTLY, QUIET = 0.1, 0.8, 3e-3
+LONGEST = 1e3       # of a quaternion: another check refuses what is more
 STEADY = 1.5        # periods that the steps to both neighbours may have
 MANY = 50           # rows from which on it is told
 MAD = 1.4826        # standard deviation over median deviation, of a normal distribution
@@ -55,18 +56,30 @@ def missing_motion(record: FlightRecord) -> tuple[str, ...]:
 
 def rough_motion(record: FlightRecord) -> tuple[str, ...]:
     """Return which of velocity and rate of a record are differences of its pose, row by row."""
-    found = []
     if len(record) < 2 * FEWEST + 1:
         return ()
-    if record.has(*POSITION, *VELOCITY):
-        place = record.stack(*POSITION)
-        if _are_differences(record.t, np.diff(place, axis=0), record.stack(*VELOCITY)):
-            found.append('velocity')
-    if record.has(*RATE) and (turns := _turns(record)) is not None:
-        moved = (turns[:-1].inv() * turns[1:]).as_rotvec()
-        if _are_differences(record.t, moved, record.stack(*RATE)):
-            found.append('rate')
-    return tuple(found)
+    with np.errstate(all='ignore'):     # values too large to judge, which another check refuses
+        return tuple(name for name, columns, moves in (
+            ('velocity', VELOCITY, _moves_of_place), ('rate', RATE, _moves_of_attitude))
+            if record.has(*columns) and any(
+                _are_differences(record.t, moved, record.stack(*columns))
+                for moved in moves(record)))
+
+
+def _moves_of_place(record: FlightRecord) -> Iterator[np.ndarray]:
+    """Yield how far each row is from the one before, (N - 1, 3)."""
+    if record.has(*POSITION):
+        yield np.diff(record.stack(*POSITION), axis=0)
+
+
+def _moves_of_attitude(record: FlightRecord) -> Iterator[np.ndarray]:
+    """Yield by how much each row is turned from the one before, (N - 1, 3), in both readings."""
+    turns = _turns(record)
+    if turns is not None:
+        yield (turns[:-1].inv() * turns[1:]).as_rotvec()
+        # Of the angles, too, whose slopes are no rates of the body.
+        angles = euler_from_quaternion(np.roll(turns.as_quat(), 1, axis=1))
+        yield np.diff(np.unwrap(angles, axis=0), axis=0)
 
 
 def with_motion(record: FlightRecord) -> FlightRecord:
@@ -104,7 +117,7 @@ def _turns(record: FlightRecord) -> Rotation | None:
     q = (record.stack(*QUATERNION) if record.has(*QUATERNION) else
          quaternion_from_euler(record.stack(*EULER)))
     lengths = np.linalg.norm(q, axis=1)
-    if not np.all(np.isfinite(lengths)) or lengths.min() < 0.5:
+    if lengths.min() < 0.5 or lengths.max() > LONGEST:
         return None
     return Rotation.from_quat(np.roll(q, -1, axis=1))
 
@@ -121,13 +134,12 @@ def _are_differences(t: np.ndarray, moved: np.ndarray, slope: np.ndarray) -> boo
     if not period > 0.0 or inner.sum() < MANY:
         return False
     mine, third = slope[1:-1][inner], np.diff(slope, 3, axis=0)
-    with np.errstate(all='ignore'):     # values too large to judge, which another check refuses
-        noise = MAD * np.median(np.abs(third), axis=0) / np.sqrt(20.0)
-        each = moved / steps[:, None]
-        both = (moved[1:] + moved[:-1]) / (steps[1:] + steps[:-1])[:, None]
-        return bool(np.all(noise > QUIET)) and any(
-            bool(np.all(np.mean(np.abs(mine - other[inner]) < ALIKE * noise, axis=0) > MOSTLY))
-            for other in (each[1:], each[:-1], both))
+    noise = MAD * np.median(np.abs(third), axis=0) / np.sqrt(20.0)
+    each = moved / steps[:, None]
+    both = (moved[1:] + moved[:-1]) / (steps[1:] + steps[:-1])[:, None]
+    return bool(np.all(noise > QUIET)) and any(
+        bool(np.all(np.mean(np.abs(mine - other[inner]) < ALIKE * noise, axis=0) > MOSTLY))
+        for other in (each[1:], each[:-1], both))
 
 
 def _slopes(t: np.ndarray, moved: Callable[[np.ndarray, np.ndarray], np.ndarray]) -> np.ndarray:

@@ -100,6 +100,17 @@ def test_differences_of_rows_give_way_to_cubics(kind, lost):
         assert len(said) == 2 and all('differences' in found.message for found in said)
 
 
+def test_slopes_of_roll_pitch_and_yaw_are_no_rates_of_the_body():
+    record, truth = flight(seconds=6.0), flight(seconds=6.0, noise=0.0)
+    turns = Rotation.from_quat(np.roll(record.stack(*Q), -1, axis=1))
+    angles = np.unwrap(turns.as_euler('ZYX')[:, ::-1], axis=0)
+    rough = with_slopes(record, record.stack(*V), np.gradient(angles, record.t, axis=0))
+    made = with_motion(rough)
+    assert made.info[DIFFERENTIATED] == ('rate',)
+    error, before = (np.std(one.stack(*W) - truth.stack(*W)) for one in (made, rough))
+    assert error < 0.4 * before
+
+
 def test_slopes_with_a_noise_of_their_own_stay():
     record = flight(seconds=6.0)
     velocity, rate = differences(record, 'both')
