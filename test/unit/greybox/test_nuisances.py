@@ -315,7 +315,7 @@ def test_single_attitudes_that_are_off_are_found_and_no_others(dragged):
     assert found[large].all() and not found[~off].any()
     assert not glitches(dragged[0].t, attitude_of(dragged[0]), rates).any()
     [finding] = [one for one in findings(record, VEHICLE) if one.code == 'attitude_glitch']
-    assert f'{int(found.sum())} times the attitude jumps' in finding.message
+    assert f'the attitude jumps off and back {int(found.sum())} times' in finding.message
 
 
 @pytest.mark.parametrize('lost', [range(145, 150), range(151, 156), range(145, 150, 4)])
