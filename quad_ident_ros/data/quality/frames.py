@@ -22,6 +22,8 @@ HEADING = np.radians([20, 35])  # off for a warning and an error: tilts to fit a
 DRAGGED = np.radians([45, 100])     # where no force is measured: drag on a circle looks alike
 LEANS, UPRIGHT = 0.9, 0.5   # correlation of the lean with the force where up is right, and wrong
 LEAN_OVER = 0.3     # s: noise of an acceleration that is twice a slope counts for little
+STANDS = 0.5        # of its length, by which the axis that is up in the body points up in flight
+LEAN_SIZE = 0.5, 2.0    # of the lean over that of the force: noise and drag make less of it
 TURN = ('turn the world into ENU (x east, y north, z up) and the body into FLU, or say '
         'world: NED, body: FRD in a mapping')
 
@@ -165,7 +167,7 @@ def y_up(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     if grid is None or attitude is None or not record.has('px', 'py', 'pz'):
         return []
     bend = grid.derivative(grid.derivative(grid.signal('px', 'py', 'pz')))
-    alike = []
+    alike, size, stands = [], 0.0, 0.0
     for up in ([0.0, 0.0, 1.0], [0.0, 1.0, 0.0]):
         level = np.flatnonzero(np.array(up) == 0.0)
         force = bend + GRAVITY * np.array(up)
@@ -173,8 +175,12 @@ def y_up(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
         lean = rotate(attitude, np.tile(up, (len(grid.t), 1)))
         one, other = (grid.smooth(values[:, level], LEAN_OVER)[grid.good]
                       for values in (lean, force))
-        alike.append(correlation(one - one.mean(axis=0), other - other.mean(axis=0))[0])
-    if not (alike[1] > LEANS and alike[0] < UPRIGHT):
+        likeness, size = correlation(one - one.mean(axis=0), other - other.mean(axis=0))
+        alike.append(likeness)
+        stands = float(np.median(lean @ up))
+    # On a wide circle, nose first, the y axis of the body is along the force, too, but level.
+    if not (alike[1] > LEANS and alike[0] < UPRIGHT and stands > STANDS
+            and LEAN_SIZE[0] < size < LEAN_SIZE[1]):
         return []
     return [Finding(
         'frame_y_up', 'error', 'position and attitude',

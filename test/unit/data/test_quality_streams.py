@@ -8,9 +8,10 @@ from flightmaker import changed, flight, VEHICLE
 import numpy as np
 import pytest
 from quality_records import CMD
+from scipy.spatial.transform import Rotation
 
 from quad_ident_ros.data.quality import cautions, findings
-from quad_ident_ros.data.record import QUATERNION
+from quad_ident_ros.data.record import FlightRecord, QUATERNION
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.model.attitude import product
@@ -126,3 +127,22 @@ def test_drag_on_a_circle_is_no_heading(measured):
                              duration=10.0, seed=1)
     record = record if measured else changed(record, ax=None, ay=None, az=None)
     assert 'heading' not in [one.code for one in findings(record, VEHICLE)]
+
+
+def test_a_wide_circle_nose_first_has_no_world_with_y_up():
+    """Its y axis points to where the path bends, and drag hides the lean that bends it."""
+    t = np.arange(0.0, 40.0, 0.02)
+    angle = 0.16 * t
+    place = np.column_stack([50 * np.cos(angle), 50 * np.sin(angle), np.full_like(t, 10.0)])
+    speed, bend = (np.gradient(place, t, axis=0),
+                   np.gradient(np.gradient(place, t, axis=0), t, axis=0))
+    up = bend + 0.3 * speed + [0.0, 0.0, 9.81]
+    up /= np.linalg.norm(up, axis=1, keepdims=True)
+    left = np.cross(up, speed)
+    left /= np.linalg.norm(left, axis=1, keepdims=True)
+    q = Rotation.from_matrix(np.stack([np.cross(left, up), left, up], axis=2)).as_quat()
+    record = FlightRecord(t, {
+        **dict(zip(('px', 'py', 'pz'), place.T, strict=True)),
+        **dict(zip(('vx', 'vy', 'vz'), speed.T, strict=True)),
+        **dict(zip(QUATERNION, np.roll(q, 1, axis=1).T, strict=True))})
+    assert 'frame_y_up' not in [one.code for one in findings(record)]
