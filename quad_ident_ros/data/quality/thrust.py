@@ -99,7 +99,7 @@ def curve(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
         return []
     share = (thrust.grid.held(*record.numbered('cmd')) - low) / (high - low)
     slope = thrust.fit(thrust.given)[0]
-    if 1.0 / STEEP < slope < STEEP:
+    if not np.isfinite(slope) or 1.0 / STEEP < slope < STEEP:
         return []
     for kind, least, factor in readings:
         squared = low ** 2 + np.clip(least + factor * share, 0, 1) * (high ** 2 - low ** 2)
@@ -112,7 +112,8 @@ def curve(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
                 f'{slope:.2g} times as large), but the signals themselves: they are shares of '
                 'thrust, not of speed',
                 f'say so in a mapping (--mapping): actuators: {{kind: {kind}, curve: thrust}}, or '
-                f'in the vehicle file: motors: {{kind: {kind}, thrust: {{exponent: 1}}}}')]
+                f'in the vehicle file: motors: {{kind: {kind}, thrust: {{exponent: 1}}}}; where '
+                'rotors turn at the lowest signal, give the file their speed there, speed_min')]
     return []
 
 
@@ -134,17 +135,17 @@ class _Thrust:
         """
         Return how much more steeply the needed thrust changes than one given, and their ratio.
 
-        Slopes are of logarithms, 1 where they do not tell.
+        Slopes are of logarithms, nan where they do not tell.
         """
         use = self.flying & (given > 0)
         if use.sum() * self.grid.period < LONGEST:
-            return 1.0, 0.0
+            return float('nan'), 0.0
         one, other = (np.log(self.grid.smooth(values[:, None], SLOWLY)[use, 0])
                       for values in (np.maximum(self.needed, 1e-9), np.maximum(given, 1e-9)))
         both = np.cov(one, other)
         scale = float(np.sqrt(both[0, 0] * both[1, 1]))
         told = scale > 0.0 and both[0, 1] > FOLLOWS * scale
-        return (float(np.sqrt(both[0, 0] / both[1, 1])) if told else 1.0,
+        return (float(np.sqrt(both[0, 0] / both[1, 1])) if told else float('nan'),
                 float(np.exp(np.median(other - one))))
 
     @classmethod

@@ -22,8 +22,11 @@ from quad_ident_ros.data.signal_kind import kinds_of
 from quad_ident_ros.diagnose.intake import take_in
 from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.flight.fly import fly_closed_loop
+from quad_ident_ros.flight.measure import SENSORS
 from quad_ident_ros.greybox.parameters import INDEX, prior_sizes
 from quad_ident_ros.model.motors import KINDS, Motors, motors_from
+from quad_ident_ros.model.vehicle import load_vehicle
 
 FLIGHT = flight(seconds=4.0, noise=0.0)
 CMD, OUTPUTS = ('cmd1', 'cmd2', 'cmd3', 'cmd4'), ('output1', 'output2', 'output3', 'output4')
@@ -303,6 +306,31 @@ def test_without_the_speed_at_full_signal_shares_of_thrust_are_told_as_well(tmp_
     for shares, known in ((SHARES_OF_THRUST, True), (SHARES, False)):
         read = load(with_outputs(tmp_path, shares), vehicle=replace(unknown, speed_min=0.0))
         assert len(curves(read, unknown)) == known
+
+
+def test_a_reading_that_thrust_does_not_follow_is_not_the_right_one():
+    """Signals that are clipped in it tell nothing of it, least of all that it fits."""
+    iris = load_vehicle('iris')
+    effects = {'inflow': {'axial': 0.3 * iris.mass}, 'motor_lag': {'time_constant': 0.05}}
+    record = fly_closed_loop(iris, effects, 'chirp_x', duration=12.0, seed=3,
+                             noise=SENSORS['mocap_imu'])
+    most = iris.hover_speed * np.sqrt(1.3)
+    shares = np.clip(record.stack(*CMD) / most, 0.0, 1.0) ** (1 / 1.2)
+    columns = {name: values for name, values in record.columns.items() if name not in CMD}
+    columns |= dict(zip(OUTPUTS, shares.T, strict=True))
+    iris = replace(iris, motors=None, speed_min=0.0, speed_max=float(most))
+    [read] = commanded([FlightRecord(record.t, columns)], iris)
+    assert not curves(read, iris)
+
+
+def test_rotors_that_turn_at_no_signal_need_a_lowest_speed(tmp_path):
+    """The line that says how to name shares of thrust says it, for such motors look alike."""
+    idle = replace(VEHICLE, speed_min=500.0, speed_max=2000.0)
+    path = with_outputs(tmp_path, (SPEEDS - 500) / 1500)
+    assert not curves(load(path, vehicle=idle), idle)
+    silent = replace(idle, speed_min=0.0)
+    [found] = curves(load(path, vehicle=silent), silent)
+    assert 'speed_min' in found.remedy
 
 
 @pytest.mark.parametrize('size', [1.0, 4.0, 0.05])
