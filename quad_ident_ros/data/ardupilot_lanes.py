@@ -88,4 +88,7 @@ def of_primary(lanes: Mapping[int, Messages], primary: Primary) -> Messages | No
     parts = [one for one in parts if len(one)]
     if not parts or any(one.rows.dtype != other.rows.dtype for one, other in pairwise(parts)):
         return None
-    return replace(parts[0], rows=np.concatenate([one.rows for one in parts]))
+    rows = np.concatenate([one.rows for one in parts])
+    if len(parts) > 1:      # back and forth between lanes, no message is out of order
+        rows = rows[np.argsort(rows['TimeUS'], kind='stable')]
+    return replace(parts[0], rows=rows)

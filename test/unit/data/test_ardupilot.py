@@ -193,6 +193,18 @@ def test_a_flight_is_split_where_the_primary_lane_changes(tmp_path):
         assert 'from lane 0 to lane 1' in ' '.join(piece.info['notes'])
 
 
+def test_lanes_that_change_back_and_forth_put_no_sample_out_of_order(tmp_path):
+    record = flight(seconds=15.0, rate=50.0)
+    outputs = 1000 + 1000 * (record.stack(*CMD) - 100) / 1600
+    messages = copter(record, outputs)
+    stamps = [values[0] for name, values in messages if name == 'ATT']
+    low, high = np.quantile(stamps, [1 / 3, 2 / 3])
+    told = [('XKF4', (stamp, 0, 0, low <= stamp < high)) for stamp in stamps]
+    pieces = load_all(file(tmp_path, dataflash([*messages, *told], STATUS)))
+    assert len(pieces) == 3
+    assert not [note for note in pieces[0].info['notes'] if 'out of order' in note]
+
+
 def test_lanes_and_sensors_of_version_4_0_have_names_of_their_own(tmp_path):
     names = {('XKF1', 0): 'NKF1', ('XKF1', 1): 'NKF6', ('XKQ', 0): 'NKQ1', ('XKQ', 1): 'NKQ2',
              ('IMU', 0): 'IMU', ('IMU', 1): 'IMU2'}
