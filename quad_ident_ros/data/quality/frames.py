@@ -18,7 +18,9 @@ STILL = 1e-6              # rad/s rms: an attitude that does not turn, but for r
 TURNED = 0.003            # share of its power by which a velocity in body axes is off at least
 STRANGE = 0.5             # correlation under which position and velocity do not go together
 SLOW = 0.3                # m/s rms under which noise may hide that they do
-HEADING = np.radians([20, 35])  # off for a warning and an error: tilts to fit are under 29 deg
+HEADING = np.radians([5, 35])   # off for a warning and an error: on a circle, clocks that are
+                                # 40 ms apart turn the force by as much
+CLEAR = 0.9                 # correlation from which on it shows to a degree how far it is off
 DRAGGED = np.radians([45, 100])     # where no force is measured: drag on a circle looks alike
 LEANS, UPRIGHT = 0.9, 0.5   # correlation of the lean with the force where up is right, and wrong
 LEAN_OVER = 0.3     # s: noise of an acceleration that is twice a slope counts for little
@@ -228,8 +230,10 @@ def _heading(speeding: np.ndarray, force: np.ndarray) -> list[Finding]:
     size = np.sqrt(np.sum(np.abs(made) ** 2) * np.sum(np.abs(given) ** 2))
     turn, mirrored = np.sum(made * np.conj(given)), abs(np.sum(made * given))
     angle = np.angle(turn)
-    low, high = HEADING if speeding.shape[1] == 3 else DRAGGED
-    if not (abs(turn) > SURE * size and abs(turn) > mirrored + BETTER * size
+    measured = speeding.shape[1] == 3
+    low, high = HEADING if measured else DRAGGED
+    least = CLEAR if measured and abs(angle) < high else SURE
+    if not (abs(turn) > least * size and abs(turn) > mirrored + BETTER * size
             and abs(angle) > low):
         return []
     return [Finding('heading', 'error' if abs(angle) > high else 'warning',

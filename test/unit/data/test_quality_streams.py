@@ -14,6 +14,7 @@ from quad_ident_ros.data.quality import cautions, findings
 from quad_ident_ros.data.record import FlightRecord, QUATERNION
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop
+from quad_ident_ros.flight.measure import SENSORS
 from quad_ident_ros.model.attitude import product
 
 
@@ -108,8 +109,9 @@ def turned(record, degrees):
 
 
 @pytest.mark.parametrize(('degrees', 'measured', 'severity'), [
-    (25.0, True, 'warning'), (-63.0, True, 'error'), (120.0, True, 'error'),
-    (175.0, True, 'error'), (63.0, False, 'warning'), (-120.0, False, 'error')])
+    (8.0, True, 'warning'), (25.0, True, 'warning'), (-63.0, True, 'error'),
+    (120.0, True, 'error'), (175.0, True, 'error'), (63.0, False, 'warning'),
+    (-120.0, False, 'error')])
 def test_a_heading_that_is_of_another_source_is_found(degrees, measured, severity):
     """A compass beside motion capture, or a map that a drone began at any heading."""
     record = turned(flight(), degrees)
@@ -126,6 +128,13 @@ def test_drag_on_a_circle_is_no_heading(measured):
     record = fly_closed_loop(VEHICLE, {'rotor_drag': {'coefficient': 0.3}}, 'circle',
                              duration=10.0, seed=1)
     record = record if measured else changed(record, ax=None, ay=None, az=None)
+    assert 'heading' not in [one.code for one in findings(record, VEHICLE)]
+
+
+@pytest.mark.parametrize('name', ['circle', 'lissajous', 'hover'])
+def test_clocks_and_noise_are_no_heading(name):
+    """On a circle the force turns while a late stream is on its way, and hover has noise alone."""
+    record = fly_closed_loop(VEHICLE, {}, name, duration=15.0, seed=3, noise=SENSORS['faulty'])
     assert 'heading' not in [one.code for one in findings(record, VEHICLE)]
 
 
