@@ -107,10 +107,10 @@ def read_ardupilot(path: str | Path, mapping: Mapping | None = None) -> list[Fli
         notes += _order_notes(parameters, bool(channels))
     start, t, columns, left_out = join(path, streams)
     record = FlightRecord(t, columns, {'name': path.stem, 'source': str(path), 'start_ns': start,
-                                     'notes': [*notes, *left_out],
-                                     'motors': _about_motors(parameters, channels),
-                                     'hardware': _hardware(found),
-                                     'modes': _modes(found.get('MODE'), start)})
+                                       'notes': [*notes, *left_out],
+                                       'motors': _about_motors(parameters, channels),
+                                       'hardware': _hardware(found),
+                                       'modes': _modes(found.get('MODE'), start)})
     return split(record, [((before - start) * 1e-9, (after - start) * 1e-9, what)
                           for before, after, what in _changes(data, flown)])
 
