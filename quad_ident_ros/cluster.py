@@ -31,6 +31,8 @@ AT_LEAST = 8        # tasks in flight where there are few workers, or none yet: 
 MEMORY = 0.8        # share of the machine's memory that all local workers together may have
 TICK = 0.25         # s, after which a caller hears again that the work goes on
 GRACE = 3.0         # s from the end of a task's time to that of its process
+LONELY = 20.0       # s without any worker, after which those of this machine are started anew; Dask
+                    # itself gives one up that could not be restarted, as on a busy machine
 REMEMBERED = 20     # messages, with the work in them, that each connection keeps for developers
 TIMES = 'quad_ident_times'
 """The topic on which a worker says that the time of a task is over."""
@@ -203,12 +205,16 @@ def _results(client: Any, function: Callable[[Item], Any], items: Iterable[Item]
     # One group of tasks, whatever their number: the scheduler never forgets a group.
     keys = zip(repeat(f'work-{uuid.uuid4().hex}'), count())
     client.subscribe_topic(topic, lambda event: news.put((event[1], True)))
-    more, most, looked = True, 1, -float('inf')
+    more, most, looked, seen = True, 1, -float('inf'), monotonic()
     try:
         while more or flying:
             if monotonic() - looked > TICK:
-                looked = monotonic()
-                most = 1 if alone else max(AT_LEAST, IN_FLIGHT * len(client.ncores()))
+                looked, workers = monotonic(), len(client.ncores())
+                seen = looked if workers else seen
+                if looked - seen > LONELY and client.cluster is not None:
+                    client.cluster.scale(len(client.cluster.worker_spec))
+                    seen = looked
+                most = 1 if alone else max(AT_LEAST, IN_FLIGHT * workers)
                 on_tick()
             for item in islice(waiting, max(0, most - len(flying))):
                 future = client.submit(_limited, function, item, time_limit, topic, key=next(keys),

@@ -123,6 +123,17 @@ def test_what_hangs_with_the_lock_of_python_is_ended_too(client):
     assert isinstance(found[1].error, WorkerDied | TimeOver)
 
 
+def test_work_goes_on_where_no_worker_could_be_restarted(monkeypatch):
+    """As on a machine so busy that a new process takes longer than its parent waits for it."""
+    import dask
+    monkeypatch.setattr('quad_ident_ros.cluster.LONELY', 2.0)
+    with dask.config.set({'distributed.deploy.lost-worker-timeout': '1s'}), \
+            cluster(workers=1, memory=MEMORY) as alone:
+        for parent in list(alone.cluster.workers.values()):
+            alone.cluster.sync(parent.close)
+        assert dict(values(alone, square, range(3))) == {0: 0, 1: 1, 2: 4}
+
+
 def test_a_scheduler_that_is_not_there_is_said_in_one_line():
     with pytest.raises(InputError, match=r'tcp://127\.0\.0\.1:1: no scheduler') as caught, \
             cluster('tcp://127.0.0.1:1'):
