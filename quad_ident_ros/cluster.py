@@ -31,8 +31,8 @@ AT_LEAST = 8        # tasks in flight where there are few workers, or none yet: 
 MEMORY = 0.8        # share of the machine's memory that all local workers together may have
 TICK = 0.25         # s, after which a caller hears again that the work goes on
 GRACE = 3.0         # s from the end of a task's time to that of its process
-LONELY = 20.0       # s without any worker, after which those of this machine are started anew; Dask
-                    # itself gives one up that could not be restarted, as on a busy machine
+LONELY = 20.0       # s without any worker, after which those of this machine are started anew:
+                    # Dask itself gives one up that could not be restarted on a busy machine
 REMEMBERED = 20     # messages, with the work in them, that each connection keeps for developers
 TIMES = 'quad_ident_times'
 """The topic on which a worker says that the time of a task is over."""
