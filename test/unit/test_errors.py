@@ -89,7 +89,7 @@ def test_folder_that_is_no_bag(tmp_path, name):
     path = tmp_path / name
     path.mkdir()
     for read in (contents_of, load_all):
-        with pytest.raises(InputError, match='no bag of ROS 2') as error:
+        with pytest.raises(InputError, match='not a bag of ROS 2') as error:
             read(path)
         assert str(error.value).count(str(path)) == 1
 

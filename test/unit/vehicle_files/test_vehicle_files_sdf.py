@@ -215,13 +215,13 @@ def test_seven_rotors_are_doubted_and_tilted_ones_refused():
 
 @pytest.mark.parametrize('old, new, said', [
     ('<mass>2.0</mass>', '<mass>two</mass>', "line 8: <mass>: expected a number, got 'two'"),
-    ('<mass>2.0</mass>', '<mass>-2</mass>', 'a mass of -2 kg cannot be'),
+    ('<mass>2.0</mass>', '<mass>-2</mass>', 'a mass of -2 kg is impossible'),
     ('<izz>0.04</izz>', '<izz>0.4</izz>', "line 6: <inertial> of link 'base_link': no body"),
     ('<jointName>rotor_1_joint', '<jointName>rotor_9_joint', "no joint 'rotor_9_joint' is in"),
     ('<linkName>rotor_1<', '<linkName>prop<', "no link 'prop' is in the model"),
     ('<motorNumber>1<', '<motorNumber>0<', 'motorNumber 0 is that of the plugin in line'),
     ('<turningDirection>cw', '<turningDirection>right', "'right' is neither cw nor ccw"),
-    ('<motorConstant>8e-06', '<motorConstant>0', 'motorConstant: 0 cannot be'),
+    ('<motorConstant>8e-06', '<motorConstant>0', 'motorConstant: 0 is impossible'),
     ('<motorConstant>8e-06', '<motorConstant>9e-06', 'motorConstant is 8e-06, that of'),
     ("<link name='rotor_0'>", "<link name='base_link'>", 'this name appears twice'),
     ('</sdf>', '', 'is not complete XML'),
