@@ -31,7 +31,7 @@ AT_LEAST = 8        # tasks in flight where there are few workers, or none yet: 
 MEMORY = 0.8        # share of the machine's memory that all local workers together may have
 TICK = 0.25         # s, after which a caller hears again that the work goes on
 GRACE = 3.0         # s from the end of a task's time to that of its process
-LONELY = 20.0       # s without any worker, after which those of this machine are started anew:
+NO_WORKERS = 20.0   # s without any worker, after which those of this machine are started anew:
                     # Dask itself gives one up that could not be restarted on a busy machine
 REMEMBERED = 20     # messages, with the work in them, that each connection keeps for developers
 TIMES = 'quad_ident_times'
@@ -211,7 +211,7 @@ def _results(client: Any, function: Callable[[Item], Any], items: Iterable[Item]
             if monotonic() - looked > TICK:
                 looked, workers = monotonic(), len(client.ncores())
                 seen = looked if workers else seen
-                if looked - seen > LONELY and client.cluster is not None:
+                if looked - seen > NO_WORKERS and client.cluster is not None:
                     client.cluster.scale(len(client.cluster.worker_spec))
                     seen = looked
                 most = 1 if alone else max(AT_LEAST, IN_FLIGHT * workers)

@@ -14,6 +14,7 @@ from dataclasses import replace
 
 import numpy as np
 from scipy.spatial.transform import Rotation
+from scipy.stats import median_abs_deviation
 
 from quad_ident_ros.data.record import EULER, FlightRecord, QUATERNION
 from quad_ident_ros.model.attitude import euler_from_quaternion, quaternion_from_euler
@@ -35,7 +36,6 @@ ALIKE, MOSTLY, QUIET = 0.1, 0.8, 3e-3
 LONGEST = 1e3       # of a quaternion: another check refuses what is more
 STEADY = 1.5        # periods that the steps to both neighbours may have
 MANY = 50           # rows from which on it is told
-MAD = 1.4826        # standard deviation over median deviation, of a normal distribution
 
 DIFFERENTIATED = 'differentiated'
 """Info of a record: groups of its states that are derivatives of the others."""
@@ -54,7 +54,7 @@ def missing_motion(record: FlightRecord) -> tuple[str, ...]:
     return tuple(found)
 
 
-def rough_motion(record: FlightRecord) -> tuple[str, ...]:
+def differenced_motion(record: FlightRecord) -> tuple[str, ...]:
     """Return which of velocity and rate of a record are differences of its pose, row by row."""
     if len(record) < 2 * FEWEST + 1:
         return ()
@@ -88,7 +88,7 @@ def with_motion(record: FlightRecord) -> FlightRecord:
 
     That is where it has none of them, or where they are differences from row to row.
     """
-    rough = rough_motion(record)
+    rough = differenced_motion(record)
     missing = (*missing_motion(record), *rough)
     if not missing or len(record) < 2 * FEWEST + 1:
         return record
@@ -134,7 +134,7 @@ def _are_differences(t: np.ndarray, moved: np.ndarray, slope: np.ndarray) -> boo
     if not period > 0.0 or inner.sum() < MANY:
         return False
     mine, third = slope[1:-1][inner], np.diff(slope, 3, axis=0)
-    noise = MAD * np.median(np.abs(third), axis=0) / np.sqrt(20.0)
+    noise = median_abs_deviation(third, scale='normal') / np.sqrt(20.0)    # white noise as it is
     each = moved / steps[:, None]
     both = (moved[1:] + moved[:-1]) / (steps[1:] + steps[:-1])[:, None]
     return bool(np.all(noise > QUIET)) and any(

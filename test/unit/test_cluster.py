@@ -126,7 +126,7 @@ def test_what_hangs_with_the_lock_of_python_is_ended_too(client):
 def test_work_goes_on_where_no_worker_could_be_restarted(monkeypatch):
     """As on a machine so busy that a new process takes longer than its parent waits for it."""
     import dask
-    monkeypatch.setattr('quad_ident_ros.cluster.LONELY', 2.0)
+    monkeypatch.setattr('quad_ident_ros.cluster.NO_WORKERS', 2.0)
     with dask.config.set({'distributed.deploy.lost-worker-timeout': '1s'}), \
             cluster(workers=1, memory=MEMORY) as alone:
         for parent in list(alone.cluster.workers.values()):

@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Propellers on a clutch that runs free one way."""
+"""Propellers that do not turn as the shafts of their motors do."""
 
 import numpy as np
 
@@ -8,16 +8,14 @@ from withheld.constants import hover_speed
 from withheld.influence import Influence
 
 
-class Freewheeling(Influence):
+class LoosePropellers(Influence):
     """
-    Propellers that a clutch takes along when the motor turns faster, and lets run on otherwise.
+    Propellers with an inertia of their own, which follow their hubs by a law, `_slope`.
 
-    They slow down by their own drag alone, so that their momentum comes at once and goes slowly.
-    As the rotors of helicopters run free of their engines in practice.
+    The body feels the reaction to that, and their momentum.
     """
 
-    TIME, FINE = 0.02, 0.0025   # s, in which the clutch grips; s, the steps
-    SLOWS = 1.5                 # 1/s, at the speed of hover
+    FINE = 0.0025       # s, the steps
 
     def __init__(self, size, params, rng):
         """Set the inertia."""
@@ -42,7 +40,26 @@ class Freewheeling(Influence):
         """Let the propellers follow."""
         count = int(np.ceil(step / self.FINE - 1e-9))
         for _ in range(count):
-            self._blades = self._blades + step / count * self._slope()
+            self._follow(step / count)
+
+    def _follow(self, step):
+        self._blades = self._blades + step * self._slope()
+
+    def _slope(self):
+        """Return the slopes (n,) of the speeds of the propellers, rad/s^2."""
+        raise NotImplementedError
+
+
+class Freewheeling(LoosePropellers):
+    """
+    Propellers that a clutch takes along when the motor turns faster, and lets run on otherwise.
+
+    They slow down by their own drag alone, so that their momentum comes at once and goes slowly.
+    As the rotors of helicopters run free of their engines in practice.
+    """
+
+    TIME = 0.02     # s, in which the clutch grips
+    SLOWS = 1.5     # 1/s, at the speed of hover
 
     def _slope(self):
         """Return the slopes (n,) of the speeds of the propellers, rad/s^2."""

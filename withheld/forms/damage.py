@@ -4,9 +4,9 @@
 
 import numpy as np
 
-from withheld.constants import hover_speed, induced_velocity
+from withheld.constants import induced_velocity
 from withheld.forms.body import Fault
-from withheld.influence import Influence
+from withheld.forms.clutches import LoosePropellers
 
 
 class Intermittent(Fault):
@@ -59,7 +59,7 @@ class Rough(Fault):
         return 1.0 + self.TORQUE * (1.0 - self.gain(now))
 
 
-class RubberRing(Influence):
+class RubberRing(LoosePropellers):
     """
     Propellers that a rubber ring holds on their shafts: they ring after a change of speed.
 
@@ -68,35 +68,17 @@ class RubberRing(Influence):
     """
 
     FREQUENCY, DAMPING = 2.0 * np.pi * 5.0, 0.25        # rad/s; of the critical one
-    FINE = 0.0025       # s, the steps
-
-    def __init__(self, size, params, rng):
-        """Set the inertia."""
-        self.inertia = 0.002 * size * params['Ixx']
-        self.parameters = {'rotor_inertia': self.inertia}
-        self.hover, self.spins = hover_speed(params), np.asarray(params['rotor_directions'])
 
     def begin(self, rng):
         """Start with a ring at rest."""
-        self._blades, self._twist, self._hubs = None, 0.0, 0.0
+        super().begin(rng)
+        self._twist = 0.0
 
-    def wrench(self, now):
-        """Return the moment of their momentum, and of what the rings pass on."""
-        self._hubs = now.speeds.copy()
-        if self._blades is None:
-            self._blades, self._twist = self._hubs, np.zeros(len(self._hubs))
-        momentum, (p, q, _) = self.spins @ self._blades, now.rate
-        return np.zeros(3), self.inertia * np.array(
-            [momentum * q, -momentum * p, self.spins @ self._pull()])
+    def _follow(self, step):
+        super()._follow(step)
+        self._twist = self._twist + step * (self._hubs - self._blades)
 
-    def after(self, step, rotation, acceleration):
-        """Let the propellers follow."""
-        count = int(np.ceil(step / self.FINE - 1e-9))
-        for _ in range(count):
-            self._blades = self._blades + step / count * self._pull()
-            self._twist = self._twist + step / count * (self._hubs - self._blades)
-
-    def _pull(self):
+    def _slope(self):
         """Return the slopes (n,) of the speeds of the propellers, rad/s^2."""
         return self.FREQUENCY * (self.FREQUENCY * self._twist + 2.0 * self.DAMPING * (
             self._hubs - self._blades))

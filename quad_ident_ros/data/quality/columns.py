@@ -12,7 +12,7 @@ from quad_ident_ros.data.differentiated import (
     DIFFERENTIATED,
     HALF,
     missing_motion,
-    rough_motion,
+    differenced_motion,
 )
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.record import EULER, FlightRecord, QUATERNION, unit
@@ -57,8 +57,11 @@ def incomplete(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
 def differentiated(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """Find velocity and rate that are taken from position and attitude, not from the record."""
     pairs = {'velocity': ('vx, vy, vz', 'the position'), 'rate': ('wx, wy, wz', 'the attitude')}
-    rough = record.info.get(DIFFERENCES) or rough_motion(record)
-    groups = record.info.get(DIFFERENTIATED) or (*missing_motion(record), *rough)
+    if DIFFERENTIATED in record.info:
+        groups, rough = record.info[DIFFERENTIATED], record.info[DIFFERENCES]
+    else:
+        rough = differenced_motion(record)
+        groups = (*missing_motion(record), *rough)
     found = []
     for group in groups:
         where, pose = pairs[group]

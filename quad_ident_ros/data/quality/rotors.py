@@ -167,8 +167,7 @@ def _scores(grid: Grid, moment: np.ndarray, squared: np.ndarray, position: np.nd
     told = moved[:, None] & (size > least[:, None])
     scale = np.sqrt(np.where(told, size * power[:, None], 1.0))
     each = np.where(told, np.einsum('aki,ai->ak', effect, cross) / scale, 0.0)
-    scores = dict(zip(orders, (each.sum(axis=0) / len(arms)).tolist(), strict=True))
-    return scores
+    return dict(zip(orders, (each.sum(axis=0) / len(arms)).tolist(), strict=True))
 
 
 def _spin_scores(told: _Evidence, spins: Sequence[int]) -> dict[tuple[int, ...], float]:
