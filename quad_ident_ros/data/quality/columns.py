@@ -8,11 +8,11 @@ import numpy as np
 
 from quad_ident_ros.data.cutting import without
 from quad_ident_ros.data.differentiated import (
+    differenced_motion,
     DIFFERENCES,
     DIFFERENTIATED,
     HALF,
     missing_motion,
-    differenced_motion,
 )
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.record import EULER, FlightRecord, QUATERNION, unit
