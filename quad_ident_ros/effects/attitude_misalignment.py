@@ -2,7 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Attitude measured in a tilted frame."""
 
-from quad_ident_ros.effects import attitude_misalignment_block, attitude_misalignment_gyro
+from quad_ident_ros.effects import (
+    attitude_misalignment_block,
+    attitude_misalignment_gyro,
+    attitude_misalignment_heading,
+)
 from quad_ident_ros.effects.base import Effect, Form, Parameter
 
 FORM = Form(
@@ -14,7 +18,8 @@ FORM = Form(
     on_rotors=False,
     sensor='attitude', needs_reference=True)
 EFFECT = Effect(
-    name='attitude_misalignment', title='tilt of the measured attitude',
-    forms=(FORM, attitude_misalignment_block.FORM, attitude_misalignment_gyro.FORM),
+    name='attitude_misalignment', title='misaligned attitude or gyro',
+    forms=(FORM, attitude_misalignment_block.FORM, attitude_misalignment_gyro.FORM,
+           attitude_misalignment_heading.FORM),
     excitation='any flight; turns of the heading to separate it from wind',
     confused_with=('wind', 'com_offset'))

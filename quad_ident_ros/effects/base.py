@@ -76,10 +76,10 @@ class Form:
     body(p, k, s): mass, inertia, centre of mass, before the flight; air(p, k, s): the wind;
     thrust(p, k, s, rotors): factors on the rotors' thrust; wrench(p, k, s, rotors): forces of
     the rotors, forces and moments on the body. actuator: 'delay' or 'lag', where its parameters
-    are those of the actuators; sensor: 'attitude' or 'rate' or 'block' (both), where they are
-    those of a sensor. acts_on: what it changes first, translation (forces), rotation (moments and
-    what is measured of the rate) or both; on_rotors: it acts on rotors, so that a vehicle flown
-    from U1..U4 needs some; needs_voltage: it acts only where the voltage is recorded;
+    are those of the actuators; sensor: 'attitude' or 'rate' or 'block' (both) or 'heading', where
+    they are those of a sensor. acts_on: what it changes first, translation (forces), rotation
+    (moments and what is measured of the rate) or both; on_rotors: it acts on rotors, so that a
+    vehicle flown from U1..U4 needs some; needs_voltage: it acts only where the voltage is recorded;
     needs_reference: it shows only against a position, a velocity or an attitude, not in
     accelerometer and gyro alone; needs_height: it shows only where the height was measured.
     """
@@ -94,7 +94,7 @@ class Form:
     thrust: Hook | None = field(default=None, repr=False)
     wrench: Hook | None = field(default=None, repr=False)
     actuator: Literal['delay', 'lag'] | None = None
-    sensor: Literal['attitude', 'rate', 'block'] | None = None
+    sensor: Literal['attitude', 'rate', 'block', 'heading'] | None = None
     on_rotors: bool = True
     needs_voltage: bool = False
     needs_reference: bool = False

@@ -18,7 +18,7 @@ from quad_ident_ros.flight.trajectories import plan, scale_of
 from quad_ident_ros.model.attitude import quaternion_from_euler, rotation_matrix, turn
 from quad_ident_ros.model.dynamics import STATES
 from quad_ident_ros.model.rigid_body import rotor_table, STATE, vehicle_vector, with_residual
-from quad_ident_ros.model.sensors import BLOCK, recorded, tilts_of
+from quad_ident_ros.model.sensors import BLOCK, heading_of, recorded, tilts_of
 from quad_ident_ros.model.vehicle import hover_fault, Vehicle
 
 FULL_VOLTAGE = 16.8     # V at the start of every flight: the voltage of reference
@@ -136,7 +136,8 @@ def flown(vehicle: Vehicle, theta: np.ndarray, wanted: np.ndarray, errors: np.nd
     flies; wanted (N, WANTED) at rate Hz; errors (N, 12) of what the controller sees; controller:
     as of controller.Tracking; parts: see _parts_of.
     """
-    tilt, rate_tilt = (rotation_matrix(each) for each in tilts_of(theta))
+    heading, tilt, rate_tilt = (rotation_matrix(each)
+                                for each in (heading_of(theta), *tilts_of(theta)))
     x = np.zeros(STATE)
     x[:3] = wanted[0, :3]
     x[6:10] = quaternion_from_euler([0.0, 0.0, wanted[0, 12]])
@@ -152,8 +153,9 @@ def flown(vehicle: Vehicle, theta: np.ndarray, wanted: np.ndarray, errors: np.nd
             controller.control(sight, phase[k], 1 / rate, command)
 
         close_loop(with_residual(vehicle_vector(vehicle), vehicle)[:, None], rotor_table(vehicle),
-                   acting[:, None].copy(), tilt, rate_tilt, 1 / rate, clock, clock * FALL,
-                   FULL_VOLTAGE, LONGEST_STEP, x, np.ascontiguousarray(seen), act, *out)
+                   acting[:, None].copy(), heading, tilt, rate_tilt, 1 / rate, clock,
+                   clock * FALL, FULL_VOLTAGE, LONGEST_STEP, x, np.ascontiguousarray(seen), act,
+                   *out)
         if clock:
             out[-1][:] += fallen
             fallen = out[-1][-1]

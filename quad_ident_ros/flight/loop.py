@@ -37,8 +37,8 @@ EMPTY = 0.7     # of the full voltage, below which none falls: 3 V of the 4.2 V 
 
 
 @compiled
-def _look(x: np.ndarray, arm: np.ndarray, tilt: np.ndarray, rate_tilt: np.ndarray,
-          bias: np.ndarray, error: np.ndarray, seen: np.ndarray) -> None:
+def _look(x: np.ndarray, arm: np.ndarray, heading: np.ndarray, tilt: np.ndarray,
+          rate_tilt: np.ndarray, bias: np.ndarray, error: np.ndarray, seen: np.ndarray) -> None:
     """Write what the controller sees (SEEN,) of the centre of mass's state x: model.sensors."""
     w, a, b, c = x[6:10]
     rotation = np.array([
@@ -49,7 +49,7 @@ def _look(x: np.ndarray, arm: np.ndarray, tilt: np.ndarray, rate_tilt: np.ndarra
     seen[3:6] = x[3:6] - rotation @ np.cross(x[10:13], arm) + error[3:6]
     small = np.array([[1.0, -error[8], error[7]], [error[8], 1.0, -error[6]],
                       [-error[7], error[6], 1.0]])
-    seen[6:15] = (rotation @ tilt @ small).ravel()
+    seen[6:15] = (heading @ rotation @ tilt @ small).ravel()
     for i in range(3):
         seen[15 + i] = bias[i] + error[9 + i]
         for j in range(3):
@@ -138,9 +138,9 @@ def _begin(v: np.ndarray, places: np.ndarray, theta: np.ndarray, s: np.ndarray, 
     prepare(v, places, theta, s, rotors)
 
 
-def close_loop(v: np.ndarray, places: np.ndarray, theta: np.ndarray, tilt: np.ndarray,
-               rate_tilt: np.ndarray, dt: float, clock: float, fall: float, full: float,
-               longest: float, x: np.ndarray, errors: np.ndarray,
+def close_loop(v: np.ndarray, places: np.ndarray, theta: np.ndarray, heading: np.ndarray,
+               tilt: np.ndarray, rate_tilt: np.ndarray, dt: float, clock: float, fall: float,
+               full: float, longest: float, x: np.ndarray, errors: np.ndarray,
                controller: Callable[[int, np.ndarray, np.ndarray], None], states: np.ndarray,
                commands: np.ndarray, speeds: np.ndarray, forces: np.ndarray, drop: np.ndarray
                ) -> None:
@@ -150,10 +150,11 @@ def close_loop(v: np.ndarray, places: np.ndarray, theta: np.ndarray, tilt: np.nd
     The controller acts at each sample, and its command is held to the next. forces (N, 3) m/s^2 is
     the specific force at the body origin just after, drop (N,) V how far the voltage fell. Before
     the first sample the first command is held. x (13,) is the state at the start and at the end.
-    Args: v, places: see rigid_body; theta (P, 1); tilt, rate_tilt (3, 3) from the body to the
-    frames of attitude and rate; dt s between samples; clock 0 where the time of flight stands
-    still; fall V/s at hover from full V; longest s of an integration step; errors (N, 12) of what
-    is seen; controller(k, seen (SEEN,), command (n,)) writes the command of sample k.
+    Args: v, places: see rigid_body; theta (P, 1); heading (3, 3) from the world to that of the
+    attitude; tilt, rate_tilt (3, 3) from the body to the frames of attitude and rate; dt s between
+    samples; clock 0 where the time of flight stands still; fall V/s at hover from full V; longest
+    s of an integration step; errors (N, 12) of what is seen; controller(k, seen (SEEN,),
+    command (n,)) writes the command of sample k.
     """
     n = len(places)
     s, rotors = np.zeros((TABLE, 1)), np.zeros((n, ROTOR_ROWS, 1))
@@ -163,7 +164,7 @@ def close_loop(v: np.ndarray, places: np.ndarray, theta: np.ndarray, tilt: np.nd
     arm, bias = s[COM_X:COM_X + 3, 0].copy(), theta[BIAS:BIAS + 3, 0].copy()
     for k in range(len(errors)):
         states[k] = state[:, 0]
-        _look(states[k], arm, tilt, rate_tilt, bias, errors[k], seen)
+        _look(states[k], arm, heading, tilt, rate_tilt, bias, errors[k], seen)
         controller(k, seen, commands[k])
         _advance(k, v, places, theta, dt, clock, fall, full, longest, state, speed, inner, energy,
                  u, s, rotors, commands, speeds, forces, drop)

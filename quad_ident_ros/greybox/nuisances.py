@@ -25,6 +25,7 @@ CLOCK_TITLE = 'how much later than the commands the states are stamped'
 TRIM = 'trim_moment'
 LEVEL = 'thrust_level'
 LEVEL_TITLE = 'thrust relative to the level at which commands were scaled to carry the weight'
+HEADING = 0.02      # rad, how far compasses usually differ from one flight to the next
 OFF_LEVEL = 0.1     # how far that usually is off: drag, wind, a battery that empties
 RARE, LIKELY = 1e-4, 0.5    # odds of flights having one, before looking
 APART = 0.02        # s, how far clocks usually are apart where nothing shows it,
@@ -87,6 +88,9 @@ def nuisances(vehicle: Vehicle, tracks: Sequence[Track]) -> tuple[Nuisance, ...]
                    'gyro_bias') for spread in (0.01, 0.003)]
         kinds += [('attitude_bias', 'tilt of the attitude', 'rad', tilt, (spread,) * 3, RARE, '',
                    (), 'attitude_misalignment') for spread in (0.005, 0.0015)]
+        kinds.append(('heading', 'heading of the attitude beside that of the position', 'rad',
+                      ('attitude_misalignment.heading',), (HEADING,), RARE, '', (),
+                      'attitude_misalignment'))
         # A weak rotor or a centre of mass that is off tilts all flights alike; nothing turns them.
         kinds.append((TRIM, 'moment', 'N m', moment, tuple(trim_wrench(vehicle)[3:]), RARE, '',
                       (True, True, False)))

@@ -213,7 +213,7 @@ def _guides(thetas: np.ndarray, sensors: Sensors, guide: np.ndarray, t: np.ndarr
     """
     one, which = distinct(thetas[:, TURNED])
     leads = np.empty((len(one), len(t), GUIDE))
-    lead(sensors.attitudes[one], sensors.rates[one], sensors.biases[one],
+    lead(sensors.attitudes[one], sensors.rates[one], sensors.headings[one], sensors.biases[one],
          np.ascontiguousarray(guide), leads)
     if len(fine) > len(t):
         q, rate = leads[..., :4], leads[..., 4:]

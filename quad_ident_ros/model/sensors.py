@@ -18,8 +18,10 @@ from quad_ident_ros.model.attitude import product, product_of, turn
 from quad_ident_ros.model.situation import GUIDE
 
 COM, TILT, BIAS = (SLICES[name] for name in ('com_offset', 'attitude_misalignment', 'gyro_bias'))
-BLOCK, GYRO = (PLACES['attitude_misalignment', form] for form in ('sensor_block', 'gyro'))
-TURNED = [place for part in (TILT, BIAS, BLOCK, GYRO) for place in range(part.start, part.stop)]
+BLOCK, GYRO, HEADING = (PLACES['attitude_misalignment', form]
+                        for form in ('sensor_block', 'gyro', 'heading'))
+TURNED = [place for part in (TILT, BIAS, BLOCK, GYRO, HEADING)
+          for place in range(part.start, part.stop)]
 SEEN = [*range(COM.start, COM.stop), *TURNED]
 NO_GUIDE = (np.zeros((0, 0, GUIDE)), np.zeros(0, np.int64))
 
@@ -29,27 +31,34 @@ class Sensors(NamedTuple):
     What T parameter sets make of a state of the centre of mass.
 
     acts (T,) whether they change it at all; arms (T, 3) m to the origin of the body; attitudes and
-    rates (T, 4), the turns from the body to the frames of attitude and of rate; biases (T, 3) of
-    the rate, rad/s.
+    rates (T, 4), the turns from the body to the frames of attitude and of rate; headings (T, 4),
+    those of the world of the attitude; biases (T, 3) of the rate, rad/s.
     """
 
     acts: np.ndarray
     arms: np.ndarray
     attitudes: np.ndarray
     rates: np.ndarray
+    headings: np.ndarray
     biases: np.ndarray
 
 
 def sensors_of(theta: np.ndarray) -> Sensors:
     """Return the Sensors of parameter sets (T, P)."""
     arms, biases = (np.ascontiguousarray(theta[:, part]) for part in (COM, BIAS))
-    return Sensors(np.any(theta[:, SEEN], axis=1), arms, *tilts_of(theta), biases)
+    return Sensors(np.any(theta[:, SEEN], axis=1), arms, *tilts_of(theta), heading_of(theta),
+                   biases)
 
 
 def tilts_of(theta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the turns (..., 4) from the body to the frames of attitude and of rate."""
     block = turn(theta[..., BLOCK])
     return product(block, turn(theta[..., TILT])), product(block, turn(theta[..., GYRO]))
+
+
+def heading_of(theta: np.ndarray) -> np.ndarray:
+    """Return the turn (..., 4) from the world of the position to that of the attitude."""
+    return turn(theta[..., HEADING] * np.array([0.0, 0.0, 1.0]))
 
 
 def recorded(theta: np.ndarray, states: np.ndarray) -> np.ndarray:
@@ -74,8 +83,9 @@ def _changed(theta: np.ndarray, states: np.ndarray, forward: bool) -> np.ndarray
 
 @compiled(fused=True)
 def change(acts: np.ndarray, arms: np.ndarray, attitudes: np.ndarray, rates: np.ndarray,
-           biases: np.ndarray, which: np.ndarray, guides: np.ndarray, guide_of: np.ndarray,
-           first: np.ndarray, stride: int, states: np.ndarray, forward: bool) -> None:
+           headings: np.ndarray, biases: np.ndarray, which: np.ndarray, guides: np.ndarray,
+           guide_of: np.ndarray, first: np.ndarray, stride: int, states: np.ndarray, forward: bool
+           ) -> None:
     """
     Change states (B, M, 13) in place: those of the centre of mass to recorded ones, or back.
 
@@ -91,7 +101,7 @@ def change(acts: np.ndarray, arms: np.ndarray, attitudes: np.ndarray, rates: np.
         for n in range(states.shape[1]):
             x = states[b, n]
             if not forward:
-                _unturned(x, attitudes[k], rates[k], biases[k])
+                _unturned(x, attitudes[k], rates[k], headings[k], biases[k])
             share = -1.0 if forward else 1.0
             if guides.shape[0]:
                 _shift(x, guides[guide_of[k], first[b] + stride * n], arms[k], share)
@@ -99,14 +109,15 @@ def change(acts: np.ndarray, arms: np.ndarray, attitudes: np.ndarray, rates: np.
                 _shift(x, x[6:], arms[k], share)
             if forward:
                 _tilt(x, attitudes[k], 1.0)
+                _turn_world(x, headings[k], 1.0)
                 _turn_rate(x, rates[k], -1.0)
                 for i in range(3):
                     x[10 + i] += biases[k, i]
 
 
 @compiled(fused=True)
-def lead(attitudes: np.ndarray, rates: np.ndarray, biases: np.ndarray, recorded: np.ndarray,
-         out: np.ndarray) -> None:
+def lead(attitudes: np.ndarray, rates: np.ndarray, headings: np.ndarray, biases: np.ndarray,
+         recorded: np.ndarray, out: np.ndarray) -> None:
     """
     Write the attitudes and rates that recorded states (N, 13) stand for by G sensors into out.
 
@@ -116,7 +127,7 @@ def lead(attitudes: np.ndarray, rates: np.ndarray, biases: np.ndarray, recorded:
     for g in range(out.shape[0]):
         for n in range(out.shape[1]):
             x[6:] = recorded[n, 6:]
-            _unturned(x, attitudes[g], rates[g], biases[g])
+            _unturned(x, attitudes[g], rates[g], headings[g], biases[g])
             sign = 1.0
             if n:
                 last = out[g, n - 1]
@@ -129,11 +140,13 @@ def lead(attitudes: np.ndarray, rates: np.ndarray, biases: np.ndarray, recorded:
 
 
 @compiled(fused=True, inlined=True)
-def _unturned(x: np.ndarray, attitude: np.ndarray, rate: np.ndarray, bias: np.ndarray) -> None:
+def _unturned(x: np.ndarray, attitude: np.ndarray, rate: np.ndarray, heading: np.ndarray,
+              bias: np.ndarray) -> None:
     """Take bias and turns of sensors out of the attitude and the rate of a state (13,)."""
     for i in range(3):
         x[10 + i] -= bias[i]
     _turn_rate(x, rate, 1.0)
+    _turn_world(x, heading, -1.0)
     _tilt(x, attitude, -1.0)
 
 
@@ -143,6 +156,13 @@ def _tilt(x: np.ndarray, tilt: np.ndarray, sense: float) -> None:
     w, a, b, c = x[6], x[7], x[8], x[9]
     t, i, j, k = tilt[0], sense * tilt[1], sense * tilt[2], sense * tilt[3]
     x[6], x[7], x[8], x[9] = product_of(w, a, b, c, t, i, j, k)
+
+
+@compiled(fused=True, inlined=True)
+def _turn_world(x: np.ndarray, turned: np.ndarray, sense: float) -> None:
+    """Turn the world of the attitude of a state (13,) by a quaternion (4,), back where -1."""
+    w, i, j, k = turned[0], sense * turned[1], sense * turned[2], sense * turned[3]
+    x[6], x[7], x[8], x[9] = product_of(w, i, j, k, x[6], x[7], x[8], x[9])
 
 
 @compiled(fused=True, inlined=True)

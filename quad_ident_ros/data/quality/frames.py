@@ -241,7 +241,8 @@ def _heading(speeding: np.ndarray, force: np.ndarray) -> list[Finding]:
                     'velocity and thrust agree only if the attitude is turned about z of the '
                     f'world by {np.degrees(angle):.0f} deg: its heading is not measured from '
                     'the x axis of the position',
-                    'take position and attitude from one source, or turn the attitude by this')]
+                    'take position and attitude from one source, or turn the attitude by this; '
+                    'a diagnosis estimates what remains (attitude_misalignment, form heading)')]
 
 
 def _height(record: FlightRecord) -> list[Finding]:

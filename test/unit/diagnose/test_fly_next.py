@@ -105,7 +105,7 @@ def test_a_sure_effect_is_named_beside_those_that_are_not():
     text = io.StringIO()
     show(found, text)
     first = text.getvalue().splitlines()[0]
-    assert first.startswith('verdict: tilt of the measured attitude (attitude_misalignment), ')
+    assert first.startswith('verdict: misaligned attitude or gyro (attitude_misalignment), ')
     assert first.endswith('; beside it, the flights cannot distinguish between error in mass '
                           '(mass_offset) and error in thrust (thrust_scale)')
     assert 'what to fly next' in text.getvalue()

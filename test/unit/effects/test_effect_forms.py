@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from scipy.signal import lsim
 
+from quad_ident_ros.data.record import QUATERNION
 from quad_ident_ros.effects import ground_effect_curve, thrust_scale_curve
 from quad_ident_ros.effects.inflow_momentum import AIR_DENSITY, induced_velocity
 from quad_ident_ros.effects.registry import EFFECTS, FORMS, from_entries, TABLE, vector
@@ -47,6 +48,7 @@ OTHERS = {
     ('attitude_misalignment', 'sensor_block'): {'block_roll': 0.03, 'block_pitch': -0.02,
                                                 'block_yaw': 0.1},
     ('attitude_misalignment', 'gyro'): {'gyro_roll': 0.03, 'gyro_pitch': -0.02, 'gyro_yaw': 0.1},
+    ('attitude_misalignment', 'heading'): {'heading': 0.1},
     ('thrust_scale', 'offset'): {'at_hover': 1.02, 'offset': 0.2},
     ('thrust_scale', 'exponent'): {'hover_factor': 1.02, 'exponent': 1.7},
     ('thrust_scale', 'curve'): {'at_70': 0.9, 'at_85': 1.05, 'at_115': 1.1, 'at_130': 0.95},
@@ -575,12 +577,36 @@ def test_the_rate_of_a_tilted_block_is_that_of_its_attitude():
 
 
 @FAST
-@given(st.tuples(*[st.floats(-0.5, 0.5)] * 9), st.tuples(*[st.floats(-5, 5)] * 12))
+@given(st.tuples(*[st.floats(-0.5, 0.5)] * 10), st.tuples(*[st.floats(-5, 5)] * 12))
 def test_what_is_recorded_in_tilted_frames_can_be_undone(values, motion):
-    theta = vector({'attitude_misalignment': dict(zip((*BLOCK, *GYRO_ALONE, *ATTITUDE), values,
-                                                      strict=True))}, VEHICLE)
+    names = (*BLOCK, *GYRO_ALONE, *ATTITUDE, 'heading')
+    theta = vector({'attitude_misalignment': dict(zip(names, values, strict=True))}, VEHICLE)
     start = state(motion[:3], motion[3:6], motion[6:9], motion[9:])
     assert np.abs(underlying(theta, recorded(theta, start)) - start).max() < 1e-12
+
+
+def test_a_heading_that_is_off_turns_the_attitude_about_the_vertical_of_the_world():
+    found = seen({'heading': 0.3})
+    about_z = rotation_matrix(turn(np.array([0.0, 0.0, 0.3])))
+    assert rotation_matrix(found[6:10]) == pytest.approx(
+        about_z @ rotation_matrix(START[6:10]), abs=1e-14)
+    assert (np.delete(found, slice(6, 10)) == np.delete(START, slice(6, 10))).all()
+
+
+def test_flights_with_a_heading_that_is_off_move_as_those_without():
+    course = steps(VEHICLE)
+    effects = {'attitude_misalignment': {'heading': 0.3}}
+    start = recorded(vector(effects, VEHICLE), START)
+    nominal, found = roll(VEHICLE, {}, course, START), roll(VEHICLE, effects, course, start)
+    kept = [*range(6), *range(10, 13)]
+    assert found[:, kept] == pytest.approx(nominal[:, kept], abs=1e-11)
+
+
+def test_a_controller_sees_the_heading_that_is_recorded():
+    record = fly_closed_loop(BARE, {'attitude_misalignment': {'heading': 0.2}}, 'hover',
+                             duration=5.0)
+    # It turns the vehicle until what it sees is the heading that it wants.
+    assert record.stack(*QUATERNION)[-1] == pytest.approx([1.0, 0.0, 0.0, 0.0], abs=1e-3)
 
 
 def test_the_force_is_measured_in_the_tilted_block():

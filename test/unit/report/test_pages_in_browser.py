@@ -90,7 +90,7 @@ def test_the_effects_fit_a_desk_with_the_longest_title(browser, gap):
         [cut] = page.evaluate("""() => [...document.querySelectorAll('.dense')]
             .filter(one => one.caption.textContent.startsWith('Effects'))
             .map(one => { const row = one.tBodies[0].rows[0], around = one.parentElement;
-              row.cells[0].textContent = 'tilt of the measured attitude (attitude_misalignment)';
+              row.cells[0].textContent = 'misaligned attitude or gyro (attitude_misalignment)';
               row.cells[5].textContent = 'thrust_coefficient';
               row.cells[7].textContent = '-0.005089 to -0.001169';
               return around.scrollWidth - around.clientWidth; })""")

@@ -31,7 +31,7 @@ def narrow(monkeypatch):
 
 EFFECTS = (('effect', 'form, explains', 'probability', 'contribution', 'parameters',
             'velocity gap\nwithout it, m/s'),
-           [('attitude_misalignment\ntilt of the measured attitude', 'gyro, 100 %', '1.00',
+           [('attitude_misalignment\nmisaligned attitude or gyro', 'gyro, 100 %', '1.00',
              '117 %', 'gyro_roll -0.003129 ± 0.001 rad, gyro_pitch -0.001669 ± 0.00095 rad',
              '0.142')])
 
