@@ -21,6 +21,7 @@ from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.data.split import split_at_jumps
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import Vehicle
+from quad_ident_ros.schema import shown
 
 Result = TypeVar('Result')
 
@@ -51,6 +52,8 @@ def load_all(path: str | Path, mapping: Mapping | None = None, vehicle: Vehicle 
     motors become commands by the mapping or the vehicle, see data.outputs.
     Args: in_part: for data.selection.selected, which then refuses what is wrong inside the part.
     """
+    if not isinstance(path, str | Path):
+        raise InputError(f'path: expected the path of a flight, got {shown(path)}')
     path = Path(path)
     flights = _with_package(path, reader_of(path),
                             lambda reader: (in_part and reader.spoilt or reader.read)(

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable
 import numpy as np
 
 from quad_ident_ros import schema
+from quad_ident_ros.arguments import flight_records, instance, READ, vehicle_given
 from quad_ident_ros.closed_loop.controller import NamedController
 from quad_ident_ros.closed_loop.reference import reference_of
 from quad_ident_ros.data.record import FlightRecord
@@ -52,6 +53,10 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
     on_progress is called with the share done.
     Raises InputError where the records are too faulty to diagnose.
     """
+    given = flight_records('records', records)
+    vehicle_given(vehicle)
+    if hold_out is not None:
+        instance('hold_out', hold_out, FlightRecord, READ)
     for name in effects or ():
         if name not in EFFECTS:
             raise schema.unknown_key('effects', name, EFFECTS)
@@ -59,7 +64,6 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
     def told(share: float) -> None:     # flying in a simulator of the user takes as long
         on_progress(share if simulator is None else 0.5 * share)
 
-    given = list(records)
     reference = (None if controller is None or not given
                  else reference_of(joined(given)[-1] if hold_out is None else hold_out))
     came = recorded([*given, *([] if hold_out is None else [hold_out])])

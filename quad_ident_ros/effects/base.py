@@ -79,8 +79,8 @@ class Form:
     are those of the actuators; sensor: 'attitude' or 'rate' or 'block' (both) or 'heading', where
     they are those of a sensor. acts_on: what it changes first, translation (forces), rotation
     (moments and what is measured of the rate) or both; on_rotors: it acts on rotors, so that a
-    vehicle flown from U1..U4 needs some; needs_voltage: it acts only where the voltage is recorded;
-    needs_reference: it shows only against a position, a velocity or an attitude, not in
+    vehicle flown from U1..U4 needs some; needs_voltage: it acts only where the voltage is
+    recorded; needs_reference: it shows only against a position, a velocity or an attitude, not in
     accelerometer and gyro alone; needs_height: it shows only where the height was measured.
     """
 

@@ -8,12 +8,13 @@ from typing import TypeAlias
 import numpy as np
 
 from quad_ident_ros import schema
+from quad_ident_ros.arguments import instance, vehicle_given
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.effects.registry import Values, vector
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.controller import Controller, Tracking
 from quad_ident_ros.flight.loop import close_loop
-from quad_ident_ros.flight.measure import CLEAN, errors_of, measured, Sensors
+from quad_ident_ros.flight.measure import CLEAN, errors_of, measured, SENSORS, Sensors
 from quad_ident_ros.flight.trajectories import plan, scale_of
 from quad_ident_ros.model.attitude import quaternion_from_euler, rotation_matrix, turn
 from quad_ident_ros.model.dynamics import STATES
@@ -53,6 +54,8 @@ def fly_closed_loop(vehicle: Vehicle, effects: Values, trajectory: str, *,
     of those that the vehicle has from then on. Raises InputError for what cannot be, and where the
     vehicle leaves its course.
     """
+    vehicle_given(vehicle)
+    instance('noise', noise, Sensors, f'SENSORS[name] is one, of {", ".join(SENSORS)}')
     duration = schema.number('duration (s)', duration, SHORTEST, LONGEST)
     rate = schema.number('rate (Hz)', rate, *RATES)
     if duration * rate > MOST_SAMPLES:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from quad_ident_ros import __version__
+from quad_ident_ros.arguments import flight_records, vehicle_given
 from quad_ident_ros.data.clocks import clocks_of, on_one_clock
 from quad_ident_ros.data.differentiated import with_motion
 from quad_ident_ros.data.inertial import is_inertial, with_position
@@ -90,7 +91,9 @@ def fit(records: Sequence[FlightRecord], vehicle: Vehicle, names: Iterable[str],
     commands were scaled by the weight (thrust_level): it would come out as the file has it; and
     for effects of the motors where measured rotor speeds take the place of commands.
     """
-    free = columns_of_names(names, vehicle)
+    records = flight_records('records', records)
+    vehicle_given(vehicle)
+    free = columns_of_names([names] if isinstance(names, str) else names, vehicle)
     refuse_twice(records)
     _refuse_level(records, free)
     _refuse_motors(records, free)

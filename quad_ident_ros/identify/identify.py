@@ -10,6 +10,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from quad_ident_ros import __version__
+from quad_ident_ros.arguments import flight_records
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.identify.findings import findings_of, order_finding
@@ -118,6 +119,7 @@ def identify(records: Sequence[FlightRecord], settings: Settings | None = None, 
     Returns an Identification. The same records, settings and seed give the same numbers.
     Raises InputError for data that cannot be identified.
     """
+    records = flight_records('records', records)
     settings = settings or Settings()
     check_bounds(settings.pole_bounds, settings.gain_bounds)
     pairs, remarks = collect(records, settings)
