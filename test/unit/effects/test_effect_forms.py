@@ -62,7 +62,8 @@ OTHERS = {
     ('blade_flapping', 'drag_point'): {'arm_x': 0.03, 'arm_y': -0.02, 'arm_z': 0.05},
     ('inflow', 'momentum'): {'through': 0.5},
     ('inflow', 'curve'): {'climb': 0.1, 'climb_square': 0.05, 'edgewise': 0.1,
-                          'edgewise_square': 0.02}}
+                          'edgewise_square': 0.02},
+    ('inflow', 'speed'): {'by_axial_speed': 0.04, 'by_edgewise_speed': 0.02}}
 EACH = [pytest.param(name, form, id=f'{name} {form}') for name, form in OTHERS]
 
 
@@ -513,6 +514,16 @@ def test_the_induced_velocity_is_that_of_momentum_theory(hover, along, across):
     assert v >= 0 and left == pytest.approx(hover ** 2, rel=0.02, abs=0.02 * hover ** 2)
     # Climbing and flying forward a rotor blows less.
     assert along < 0 or v <= hover * (1 + 1e-12)
+
+
+@pytest.mark.parametrize(('velocity', 'lost'), [
+    ((0, 0, 2), 0.08), ((0, 0, -2), 0.08), ((3, -4, 0), 0.1), ((3, 4, 1), 0.14),
+    ((0, 0, 30), 1.0)])
+def test_thrust_falls_with_the_speed_either_way(velocity, lost):
+    effects = {'inflow': {'by_axial_speed': 0.04, 'by_edgewise_speed': 0.02}}
+    course = held(BARE, HOVER, 1e-5, 1e-6)
+    found = roll(BARE, effects, course, state(velocity=velocity))
+    assert (found[-1, 5] - velocity[2]) / 1e-5 == pytest.approx(-lost * GRAVITY, rel=1e-4)
 
 
 def test_climbing_costs_the_thrust_of_the_closed_form():
