@@ -16,6 +16,9 @@ from quad_ident_ros.vehicle_files.weak_rotors import faults, losses_of, SAME
 from quad_ident_ros.vehicle_files.xml_tree import Element
 
 _PLUGINS = ('multicopter-motor-model', 'multicoptermotormodel', 'gazebo_motor_model')
+# PX4's plugin of Gazebo Classic takes the axial speed over this, in m/s, from the thrust; its code
+# has the number, no file has. RotorS, from which it came, and gz-sim do not.
+_CLASSIC, _NO_THRUST = 'libgazebo_motor_model.so', 25.0
 TURNS = {'cw': 1, 'ccw': -1}
 """Signs of the reaction torque by the direction in which a rotor turns, seen from above."""
 # Tag, what it is where the tag is missing (in the code of the plugin), unit.
@@ -101,12 +104,19 @@ def take_motors(draft: Draft, plugins: Sequence[MotorPlugin], spinning: Sequence
         f'speeds are those of the rotors; the joints turn {slow:g} times slower '
         '(rotorVelocitySlowdownSim)')
 
+    classic = first.get('filename') == _CLASSIC
+    if classic:
+        draft.assumed.append(
+            f'thrust falls by the speed along the axis over {_NO_THRUST:g} m/s, up or down, as in '
+            f'the code of {_CLASSIC} of PX4')
+
     def effects(vehicle: Vehicle) -> Values:
         rise, fall = values['timeConstantUp'], values['timeConstantDown']
         drag = per_sum_of_speeds(values['rotorDragCoefficient'], vehicle)
         return {'motor_lag': ({'time_constant': rise} if rise == fall else
                               {'rise': rise, 'fall': fall}),
                 'rotor_drag': {'coefficient': drag}, 'rotor_gyro': {'rotor_inertia': inertia},
+                **({'inflow': {'by_axial_speed': 1.0 / _NO_THRUST}} if classic else {}),
                 **faults(losses)}
 
     draft.effects = effects

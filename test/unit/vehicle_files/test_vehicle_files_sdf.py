@@ -109,6 +109,17 @@ def test_the_motors_are_those_of_the_plugin():
     assert '<plugin' in WHOLE.splitlines()[line - 1]
 
 
+@pytest.mark.parametrize(('plugin', 'share'), [
+    ('libgazebo_motor_model.so', 0.04), ('librotors_gazebo_motor_model.so', None),
+    ('gz-sim-multicopter-motor-model-system', None)])
+def test_motors_of_px4_in_gazebo_classic_lose_thrust_with_the_axial_speed(plugin, share):
+    text = WHOLE.replace('gz-sim-multicopter-motor-model-system', plugin)
+    found = reading(text)
+    assert found.vehicle.effects.get('inflow', {}).get('by_axial_speed') == share
+    assert any('thrust falls by the speed along the axis over 25 m/s' in line
+               for line in found.assumed) == (share is not None)
+
+
 def test_motors_are_in_the_order_of_their_numbers():
     texts = [MOTOR.format(k=k, turn=TURNS[k]) for k in (2, 0, 3, 1)]
     assert reading(model(bodies(), *texts)).vehicle == reading(WHOLE).vehicle
