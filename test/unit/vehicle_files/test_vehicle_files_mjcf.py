@@ -138,6 +138,7 @@ def test_of_two_vehicles_one_is_named():
     ('gear="0 0 1 0 0 -', 'gear="0 0.5 1 0 0 -', '26.6 deg off body z'),
     ('gear="0 0 1 0 0 -0.02', 'gear="0 0 1 0 0 -0.03', 'torque over thrust is 0.02, that of the'),
     ('class="quad" name="m0"', 'class="none" name="m0"', "no default class 'none' is in the"),
+    ('site="thrust0"', 'site="thrst0"', "<motor name='m0'>: no site 'thrst0' is in"),
     ('<light pos="0 0 2"/>', '<include file="x2.xml"/>', "<include>: 'x2.xml' is not beside"),
     ('<light pos="0 0 2"/>', '<replicate count="2"/>', '<replicate>: it is not expanded here'),
     (INERTIAL, '<geom type="mesh" mesh="frame" mass="1"/>', "the mesh 'frame', which is not read"),
@@ -190,6 +191,7 @@ def test_what_a_scene_includes_is_read(tmp_path):
     assert found.vehicle == reading(model()).vehicle
     places = {entry.key: entry.place for entry in found.read}
     assert places['mass'].startswith('x2.xml, line ')
+    assert places['rotors'].startswith('x2.xml, lines ')
     with pytest.raises(InputError, match='the vehicle stands in .*x2.xml, which it includes'):
         export(found.vehicle, 'mujoco', source_of(scene))
     scene.write_text('<mujoco>\n<include file="x2.xml"/>\n<include file="x2.xml"/></mujoco>')
