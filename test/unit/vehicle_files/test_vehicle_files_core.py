@@ -164,6 +164,7 @@ def test_products_of_inertia_are_those_of_the_vehicle(tmp_path):
     ("'k_m': 1e-7, ", '', 'has no k_m, which rotorpy needs; add it'),
     ("'Izz': 5e-3", "'Izz': 9e-3", 'line 5: no body has this inertia'),
     ("'Iyy': 4e-3", "'Iyy': 'a'", "line 5: Iyy: expected a number, got 'a'"),
+    ("'num_rotors': 4", "'num_rotors': 6", 'num_rotors is 6, and rotor_pos has 4 places; correct'),
     ('[1, -1, 1, -1]', '[1, -1, 1]', 'rotor_directions: expected a list of 4'),
     ('[1, -1, 1, -1]', '[1, -1, 1, 2]', 'rotor_directions: 2.0 is not one of 1, -1'),
     ('[1, -1, 1, -1]', '[1, -1, 1, -1.5]', 'rotor_directions: -1.5 is not one of 1, -1'),

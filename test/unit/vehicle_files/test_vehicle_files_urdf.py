@@ -165,6 +165,7 @@ def test_links_stand_where_yourdfpy_has_them():
     ('<robot name="drone">', '<robot name="drone"><xacro:include filename="a"/>',
      'line 2: <xacro:include> is not expanded; run `xacro'),
     ('value="1.5"', 'value="many"', "line 4: <mass>: value: expected a number, got 'many'"),
+    ('value="1.5"', 'value="-1.5"', "line 4: <mass> of link 'base_link': a mass below 0 is"),
     ('izz="0.04"', 'izz="0.4"', "line 3: <link name='base_link'>: no body has this inertia"),
     ('<parent link="base_link"/>', '<parent link="bse"/>', "its parent 'bse' is not a link"),
     ('<link name="camera">', '<link name="base_link">', 'a name of its own for each link'),
