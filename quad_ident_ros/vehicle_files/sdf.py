@@ -166,9 +166,9 @@ def _body(draft: Draft, link: Element) -> Body:
         raise InputError(f'{inertial.where}: <inertia> is missing, for which Gazebo takes 1 kg '
                          'm2; state it')
     centre, rotation = pose_of_inertial(link)
-    moments = symmetric(*(matrix.value(tag, 1.0) for tag in ('ixx', 'iyy', 'izz')),
+    moments = symmetric(*(matrix.value(tag) for tag in ('ixx', 'iyy', 'izz')),
                         *(matrix.value(tag, 0.0) for tag in ('ixy', 'ixz', 'iyz')))
-    body = Body(inertial.value('mass', 1.0), centre, rotation @ moments @ rotation.T)
+    body = Body(inertial.value('mass'), centre, rotation @ moments @ rotation.T)
     remark = check_body(f'{inertial.where} of link {link.get("name")!r}', body)
     if remark:
         draft.assumed.append(f'{_place(draft, link, "inertial")}: {remark}')

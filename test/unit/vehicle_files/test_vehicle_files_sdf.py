@@ -230,6 +230,8 @@ def test_seven_rotors_are_doubted_and_tilted_ones_refused():
 @pytest.mark.parametrize('old, new, said', [
     ('<mass>2.0</mass>', '<mass>two</mass>', "line 8: <mass>: expected a number, got 'two'"),
     ('<mass>2.0</mass>', '<mass>-2</mass>', 'a mass of -2 kg is impossible'),
+    ('<mass>2.0</mass>', '', 'line 6: <inertial>: <mass> is missing; add it'),
+    ('<izz>0.04</izz>', '', 'line 9: <inertia>: <izz> is missing; add it'),
     ('<izz>0.04</izz>', '<izz>0.4</izz>', "line 6: <inertial> of link 'base_link': no body"),
     ('<jointName>rotor_1_joint', '<jointName>rotor_9_joint', "no joint 'rotor_9_joint' is in"),
     ('<linkName>rotor_1<', '<linkName>prop<', "no link 'prop' is in the model"),
