@@ -160,6 +160,7 @@ def test_products_of_inertia_are_those_of_the_vehicle(tmp_path):
 @pytest.mark.parametrize('old, new, said', [
     ("'mass': 1.0 / 2", "'mass': measured()", 'line 4: measured() is not a number'),
     ("'mass': 1.0 / 2", "'mass': 10 ** 10 ** 10", 'line 4: 10 ** 10 ** 10 is not a number'),
+    ("'mass': 1.0 / 2", "'mass': None", 'line 4: mass: expected a number, it is empty'),
     ("'mass': 1.0 / 2", "'mass': -0.5", 'line 4: mass: -0.5 is out of range'),
     ("'k_m': 1e-7, ", '', 'has no k_m, which rotorpy needs; add it'),
     ("'Izz': 5e-3", "'Izz': 9e-3", 'line 5: no body has this inertia'),
@@ -199,6 +200,12 @@ def test_a_dictionary_that_is_changed_later_is_refused(change):
     line = PARAMETERS.count('\n') + 1
     said = refused(PARAMETERS + change + '\n', 'params.py')
     assert f'line {line}: quad_params is changed here' in said
+
+
+def test_an_entry_of_none_that_is_not_needed_is_passed_over():
+    text = PARAMETERS.replace("'num_rotors': 4", "'sensor': None, 'num_rotors': 4")
+    assert read_vehicle(Source('params.py', text)).vehicle == read_vehicle(
+        Source('params.py', PARAMETERS)).vehicle
 
 
 def test_what_stands_beside_a_dictionary_does_not_change_it():

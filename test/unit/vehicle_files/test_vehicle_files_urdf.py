@@ -80,6 +80,16 @@ def test_properties_of_gym_pybullet_drones_are_per_rpm():
     assert sum('is left out: it acts only with Physics.' in text for text in found.assumed) == 3
 
 
+def test_props_beyond_the_four_of_gym_pybullet_drones_are_said_to_carry_nothing():
+    more = SMALL.replace('</robot>', ''.join(PROP.format(k=k, x=0.01 * k, y=0) for k in (4, 5, 6))
+                         + '</robot>')
+    found = reading(more)
+    assert found.vehicle == reading(SMALL).vehicle
+    said = 'these carry nothing: prop4_link, prop5_link, prop6_link'
+    assert [text.endswith(said) for text in found.assumed].count(True) == 1
+    assert not any('carry nothing' in text for text in reading(SMALL).assumed)
+
+
 def test_a_plain_urdf_has_mass_and_places_and_asks_for_the_rest():
     found = reading(drone())
     assert list(found.missing) == ['thrust_coefficient', 'torque_coefficient', 'spins']
