@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Vehicles in MJCF models, by hand and as MuJoCo itself has them."""
 
+from dataclasses import replace
 import math
 
 import numpy as np
@@ -172,6 +173,15 @@ def test_a_motor_without_a_site_does_not_act_at_one_without_a_name():
 def test_an_inertia_that_mujoco_balances_is_that_of_a_ball():
     text = model(INERTIAL.replace('0.04', '0.4'), before='<compiler balanceinertia="true"/>')
     assert reading(text).vehicle.inertia == pytest.approx([0.15] * 3, rel=1e-12)
+
+
+def test_an_inertia_below_the_bound_of_the_compiler_is_not_exported():
+    source = Source('quad.xml', model(before='<compiler boundinertia="0.025"/>'))
+    vehicle = read_vehicle(source).vehicle
+    assert vehicle.inertia == pytest.approx([0.025, 0.03, 0.04])
+    assert export(replace(vehicle, inertia=(0.026, 0.03, 0.04)), 'mujoco', source).changes
+    with pytest.raises(InputError, match='boundinertia or balanceinertia of <compiler> changes'):
+        export(replace(vehicle, inertia=(0.02, 0.03, 0.04)), 'mujoco', source)
 
 
 def test_forces_that_are_left_out_are_said():
