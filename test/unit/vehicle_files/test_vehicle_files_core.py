@@ -315,6 +315,10 @@ def test_entities_that_stand_for_gigabytes_are_refused_at_once(tmp_path):
         load_any_vehicle(written(tmp_path, text, 'bomb.urdf'))
 
 
+def test_an_empty_file_is_said_to_be_empty():
+    assert refused('\n', 'model.sdf') == 'model.sdf: the file is empty; save or copy it again'
+
+
 def test_kinds_are_told_by_content():
     assert kind_of(PARAMETERS).name == 'rotorpy'
     for text in ('', 'mass: 1.0', '{"a": 1}', '<html></html>', 'x = 1', '[a]\nb = 1\n'):
