@@ -37,5 +37,5 @@ def residual_line(found: Diagnosis) -> str:
 
 def share_of(one: ShareClosed) -> str:
     """Return a share with its standard error, in words."""
-    error = '' if one.std is None else f' ± {100 * one.std:.1g}'
+    error = '' if one.std is None else f' ± {float(f"{100 * one.std:.1g}"):g}'
     return f'{100 * one.closed:.0f}{error} %'

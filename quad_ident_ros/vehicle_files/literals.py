@@ -138,7 +138,7 @@ def _lines_of(node: ast.expr, usual: int, value: Mapping[str, Any]) -> dict[str,
 
 def _value(node: ast.expr, names: Mapping[str, Any]) -> Any:
     """Return what an expression stands for; raises _Unreadable."""
-    if isinstance(node, ast.Constant) and isinstance(node.value, int | float | str):
+    if isinstance(node, ast.Constant) and isinstance(node.value, int | float | str | None):
         return node.value
     if isinstance(node, ast.Name) and node.id in names:
         return names[node.id]

@@ -33,6 +33,8 @@ def load_any_vehicle(name_or_path: str | Path) -> Vehicle:
 
 def read_vehicle(source: Source, supplied: Mapping[str, Any] | None = None) -> Reading:
     """Return the Reading of a file of a simulator; see reading.finished. Raises InputError."""
+    if not source.text.strip():
+        raise InputError(f'{source.path}: the file is empty; save or copy it again')
     kind = kind_of(source.text)
     if kind is None:
         raise InputError(f'{source.path}: this kind of vehicle file is not known; give '

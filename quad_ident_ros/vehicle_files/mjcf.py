@@ -122,7 +122,7 @@ def _take_rotors(draft: Draft, model: Model, parts: Sequence[Part], pushes: Sequ
         for key in ('rotors', 'thrust_coefficient', 'torque_coefficient'):
             draft.reasons[key] = reason
         return
-    where = f'lines {", ".join(str(push.element.line) for push in thrusts)}: <actuator>'
+    where = _lines_of(thrusts)
     turning = []
     for push in thrusts:
         axis = push.force / np.linalg.norm(push.force)
@@ -155,6 +155,15 @@ def _take_rotors(draft: Draft, model: Model, parts: Sequence[Part], pushes: Sequ
         draft.assumed.append(f'the lag of {lag:g} s is one of the thrust; it is taken as that of '
                              'the speed, which is the same for small changes')
     draft.effects = lambda _: {'motor_lag': {'time_constant': lag}, **faults(losses)}
+
+
+def _lines_of(thrusts: Sequence[Push]) -> str:
+    """Return where the actuators of the rotors stand, of each file that has some."""
+    files: dict[str, list[str]] = {}
+    for push in thrusts:
+        files.setdefault(push.element.beside, []).append(str(push.element.line))
+    return ', '.join(f'{file}{", " * bool(file)}lines {", ".join(lines)}'
+                     for file, lines in files.items()) + ': <actuator>'
 
 
 def _take_limits(draft: Draft, thrusts: Sequence[Push], per_control: float, whole: Body,

@@ -86,7 +86,7 @@ def _parts(model: Model, element: Element, place: Pose, inherited: str) -> Itera
         elif child.tag == 'body':
             below.append((frame, child, held))
     body, source = _inertia(model, element, geoms)
-    body = _bounded(model, element, body)
+    body = bounded(model, element, body)
     remark = check_body(element.where, body)
     yield Part(element, body.placed(place), place, tuple(joints), sites, source, remark)
     for frame, child, held in below:
@@ -108,7 +108,7 @@ def _inertia(model: Model, element: Element, geoms: list[tuple[Pose, Element]]
     return (NOTHING, '') if stated is None else (_stated(model, stated), 'inertial')
 
 
-def _bounded(model: Model, element: Element, body: Body) -> Body:
+def bounded(model: Model, element: Element, body: Body) -> Body:
     """Return a body with the mass and principal moments that the compiler has it have."""
     [mass], [moment] = model.setting('boundmass', (0.0,)), model.setting('boundinertia', (0.0,))
     balanced = model.compiler.get('balanceinertia') == 'true'

@@ -12,7 +12,7 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.vehicle_files.bodies import Pose
 from quad_ident_ros.vehicle_files.mjcf_defaults import Model
 from quad_ident_ros.vehicle_files.weak_rotors import SAME
-from quad_ident_ros.vehicle_files.xml_tree import Element
+from quad_ident_ros.vehicle_files.xml_tree import Element, SHOWN
 
 
 @dataclass(frozen=True)
@@ -40,9 +40,13 @@ class Push:
 
 def pushes_of(model: Model, sites: dict[str, tuple[Pose, Element]]) -> list[Push]:
     """Return what the actuators do at the sites (Pose in body axes) of a vehicle; InputError."""
+    known = {element.get('name') for element in model.root.walk() if element.tag == 'site'}
     found = []
     for holder in model.root.all('actuator'):
         for child in holder.children:
+            if child.get('site') and child.get('site') not in known:
+                raise InputError(f'{child.where}: no site {child.get("site")[:SHOWN]!r} is in the '
+                                 'model; correct the name')
             if child.get('site') in sites and child.tag in ('motor', 'general'):
                 element = model.whole(child, '')
                 found.append(_push(model, element, sites[child.get('site')][0]))

@@ -15,7 +15,7 @@ from quad_ident_ros.vehicle_files.bodies import Body
 from quad_ident_ros.vehicle_files.edit_xml import EditedXml
 from quad_ident_ros.vehicle_files.edits import differs, SAME, shown
 from quad_ident_ros.vehicle_files.mjcf import bodies_of, flying_body
-from quad_ident_ros.vehicle_files.mjcf_bodies import Part, parts_of
+from quad_ident_ros.vehicle_files.mjcf_bodies import bounded, Part, parts_of
 from quad_ident_ros.vehicle_files.mjcf_defaults import Model, model_of
 from quad_ident_ros.vehicle_files.mjcf_include import parsed
 from quad_ident_ros.vehicle_files.mjcf_thrust import Push, pushes_of
@@ -57,7 +57,13 @@ def write(base: Base) -> EditedXml:
         if 'settotalmass' in model.compiler:
             raise InputError(f'{base.source.path}: settotalmass of <compiler> scales every mass; '
                              'take it out and state the masses themselves')
-        _write_body(edited, base, model, parts[main], body.placed(parts[main].pose.inverse))
+        inside = body.placed(parts[main].pose.inverse)
+        kept = bounded(model, parts[main].element, inside)
+        if kept.mass > inside.mass or not np.allclose(
+                kept.inertia, inside.inertia, rtol=0.0, atol=SAME * np.max(inside.inertia)):
+            raise InputError(f'{base.source.path}: boundmass, boundinertia or balanceinertia of '
+                             '<compiler> changes the mass or inertia of the vehicle; take it out')
+        _write_body(edited, base, model, parts[main], inside)
         edited.say_several(parts[main].element, len(bodies))
     edited.lack(['speed_max'], 'a command is a thrust here, and speeds are not of the file')
     _write_thrusts(edited, base, thrusts)

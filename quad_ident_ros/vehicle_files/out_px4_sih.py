@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 
 from quad_ident_ros.vehicle_files.edits import Edits, shown
@@ -68,13 +70,14 @@ class _EditedParameters(Edits):
             self._add(name, new)
 
     def _add(self, name: str, new: float) -> None:
-        """Put a line behind that of another parameter, in the form of that."""
+        """Put a line before that of another parameter, in the form of that but for its comment."""
         key, other = max(self.parameters.items(), key=lambda each: (
             each[0] != 'SIH_VEHICLE_TYPE', each[1].line))
         begin = self.data.rfind(b'\n', 0, other.span[0]) + 1
         end = self.data.find(b'\n', other.span[0])
         line = self.data[begin:len(self.data) if end < 0 else end]
-        before, after = line[:other.span[0] - begin], line[other.span[1] - begin:]
+        before = line[:other.span[0] - begin]
+        after = re.sub(rb'[ \t]*#[^\r]*', b'', line[other.span[1] - begin:])
         text = (before.replace(key.encode(), name.encode()) + shown([new]).encode() + after)
         self.replace(begin, begin, text.decode() + '\n')
 

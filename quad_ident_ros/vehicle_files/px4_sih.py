@@ -30,8 +30,10 @@ LAYOUTS: dict[float, tuple[tuple[float, float, int], ...]] = {
     4: ((_HALF, -0.5, -1), (0, -1, 1), (-_HALF, -0.5, -1), (-_HALF, 0.5, 1), (0, 1, -1),
         (_HALF, 0.5, 1))}
 OTHERS: dict[float, str] = {1: 'a fixed wing', 2: 'a tailsitter', 3: 'a VTOL', 5: 'a rover'}
-_LINE = re.compile(r'\b(SIH_[A-Z0-9_]+)\b(?:[ \t]*\[[^\]\n]*\])?[ \t,:=]*'
-                   r'([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)')
+_NAME = r'\b(SIH_[A-Z0-9_]+)\b(?:[ \t]*\[[^\]\n]*\])?[ \t,:=]*'
+# Neither a unit nor a decimal comma may follow the number.
+_LINE = re.compile(_NAME + r'([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)(?![\w.]|,\d)')
+_ANY = re.compile(_NAME + r'(\S*)')
 
 
 @dataclass(frozen=True)
@@ -50,6 +52,7 @@ def recognises(text: str) -> bool:
 
 def read(source: Source) -> Draft:
     """Return the Draft of parameters of PX4's SIH; raises InputError."""
+    _check_lines(source)
     known = parameters_of(source.text)
     values = {key: one.value for key, one in known.items()}
     kind = values.get('SIH_VEHICLE_TYPE', 0.0)
@@ -104,6 +107,15 @@ def read(source: Source) -> Draft:
 
     draft.effects = effects
     return draft
+
+
+def _check_lines(source: Source) -> None:
+    """Raise InputError for a parameter of SIH that is set to what is no number."""
+    for number, line in enumerate(source.text.splitlines(), 1):
+        for match in _ANY.finditer(line.partition('#')[0]):
+            if match[1] in USUAL and not _LINE.match(line, match.start()):
+                raise InputError(f'{source.path}, line {number}: {match[1]}: expected a number, '
+                                 f'got {schema.shown(match[2])}')
 
 
 def parameters_of(text: str) -> dict[str, Parameter]:

@@ -89,6 +89,11 @@ def _take_rotors(draft: Draft, source: Source, table: Table) -> None:
         raise InputError(f'{where}: expected the places of the rotors, {{"r1": [x, y, z], ...}}')
     positions = [np.array(schema.numbers(f'{where}[{k}]', _plain(one), 3))
                  for k, one in enumerate(places)]
+    count = _plain(table.values.get('num_rotors', len(positions)))
+    if count != len(positions):
+        raise InputError(f'{source.path}, line {table.lines["num_rotors"]}: num_rotors is '
+                         f'{schema.shown(count)}, and rotor_pos has {len(positions)} places; '
+                         'correct one of them')
     if spins is None:
         raise InputError(f'{source.path}, line {lines["rotor_pos"]}: {table.name} has no '
                          'rotor_directions, the signs of the torques; add it')

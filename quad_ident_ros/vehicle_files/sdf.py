@@ -19,7 +19,14 @@ from quad_ident_ros.vehicle_files.gz_motors import (
 )
 from quad_ident_ros.vehicle_files.reading import Draft
 from quad_ident_ros.vehicle_files.rotor_axes import check_axis
-from quad_ident_ros.vehicle_files.sdf_frames import child_text, MODEL, pose_of, Tree, tree_of
+from quad_ident_ros.vehicle_files.sdf_frames import (
+    child_text,
+    MODEL,
+    name_of,
+    pose_of,
+    Tree,
+    tree_of,
+)
 from quad_ident_ros.vehicle_files.source import is_file, one_of, Source, text_of
 from quad_ident_ros.vehicle_files.xml_tree import Element, parse, root_of, SHOWN
 
@@ -71,10 +78,14 @@ def flying_model(source: Source, root: Element) -> tuple[Element, Tree]:
     """Return the <model> of a file that has motors, and its Tree; InputError."""
     trees: dict[str, tuple[Element, Tree]] = {}
     for holder in (root, *root.all('world')):
-        for model in _models(holder, source):
+        for name, element, model in _models(holder, source):
             tree = tree_of(model, _included)
-            if _plugins(tree):
-                trees[model.get('name')] = model, tree
+            if not _plugins(tree):
+                continue
+            if name in trees:
+                raise InputError(f'{element.where}: a model {name[:SHOWN]!r} appears twice; give '
+                                 'each a <name> of its own')
+            trees[name] = model, tree
     if not trees and not source.wanted:
         raise InputError(f'{source.path}: no model in it has a plugin MulticopterMotorModel; give '
                          'the model.sdf that has the motors')
@@ -155,9 +166,9 @@ def _body(draft: Draft, link: Element) -> Body:
         raise InputError(f'{inertial.where}: <inertia> is missing, for which Gazebo takes 1 kg '
                          'm2; state it')
     centre, rotation = pose_of_inertial(link)
-    moments = symmetric(*(matrix.value(tag, 1.0) for tag in ('ixx', 'iyy', 'izz')),
+    moments = symmetric(*(matrix.value(tag) for tag in ('ixx', 'iyy', 'izz')),
                         *(matrix.value(tag, 0.0) for tag in ('ixy', 'ixz', 'iyz')))
-    body = Body(inertial.value('mass', 1.0), centre, rotation @ moments @ rotation.T)
+    body = Body(inertial.value('mass'), centre, rotation @ moments @ rotation.T)
     remark = check_body(f'{inertial.where} of link {link.get("name")!r}', body)
     if remark:
         draft.assumed.append(f'{_place(draft, link, "inertial")}: {remark}')
@@ -208,15 +219,20 @@ def _axis(tree: Tree, joint: tuple[Element, str], link: Element) -> np.ndarray:
     return rotation @ axis / np.linalg.norm(axis)
 
 
-def _models(holder: Element, source: Source) -> Iterator[Element]:
-    """Give the models of a world or a file; those that a world includes and that exist."""
-    yield from (model for model in holder.all('model')
+def _models(holder: Element, source: Source) -> Iterator[tuple[str, Element, Element]]:
+    """
+    Give the models of a world or a file: name, the element that places it, the <model>.
+
+    Of those that a world includes, the ones that exist.
+    """
+    yield from ((model.get('name'), model, model) for model in holder.all('model')
                 if not (model.first('static') is not None
                         and child_text(model, 'static') in ('true', '1')))
     for include in holder.all('include'):
         uri = child_text(include, 'uri')
         if _found(source.path, uri) is not None:
-            yield _included(include)
+            model = _included(include)
+            yield name_of(include, model), include, model
 
 
 def _included(element: Element) -> Element:

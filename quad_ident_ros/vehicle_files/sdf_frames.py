@@ -92,6 +92,12 @@ def child_text(element: Element, tag: str) -> str:
     return child.text.strip()
 
 
+def name_of(element: Element, model: Element) -> str:
+    """Return the name of a <model>, or that which an <include> of it gives."""
+    given = element.first('name')
+    return given.text.strip() if given is not None else model.get('name')
+
+
 def _gather(tree: Tree, model: Element, scope: str, frame: str, include: Include,
             depth: int) -> None:
     """Enter what a <model> holds; scope: before its names; frame: the full name of its frame."""
@@ -130,8 +136,7 @@ def _nest(tree: Tree, element: Element, scope: str, full: Callable[[str], str],
            for each in (element, inner)):
         raise InputError(f'{element.where}: placement_frame is not read; state the pose of the '
                          'model without it')
-    given = element.first('name')
-    name = given.text.strip() if given is not None else inner.get('name')
+    name = name_of(element, inner)
     stated, parent = pose_of(element if element.first('pose') is not None else inner)
     merged = element.get('merge') in ('true', '1')
     frame = f'{scope}_merged__{name}__model__' if merged else f'{scope}{name}'

@@ -59,6 +59,10 @@ def read(source: Source) -> Draft:
         _take_plugins(draft, plugins, rotors, whole)
     elif properties is not None and set(PROPS) <= links.keys():
         _take_properties(draft, properties, rotors, whole, source)
+        others = [name for name in links if _ROTOR.search(name) and name not in PROPS]
+        if others:
+            draft.assumed.append('gym-pybullet-drones flies with prop0_link to prop3_link; these '
+                                 f'carry nothing: {", ".join(others[:5])}')
     else:
         _take_names(draft, rotors, whole)
     return draft

@@ -107,6 +107,9 @@ def _body(link: Element) -> Body | None:
                          'value=""/> and <inertia ixx="" .../>')
     matrix = symmetric(*(moments.number(key) for key in ('ixx', 'iyy', 'izz')),
                        *(moments.number(key, 0.0) for key in ('ixy', 'ixz', 'iyz')))
+    if mass.number('value') < 0.0:
+        raise InputError(f'{mass.where} of link {link.get("name")!r}: a mass below 0 is '
+                         'impossible; correct it')
     return Body(mass.number('value'), np.zeros(3), matrix).placed(origin_of(inertial))
 
 

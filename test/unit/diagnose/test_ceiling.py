@@ -12,10 +12,11 @@ from quad_ident_ros.cli.main import main
 from quad_ident_ros.data.csv import write_csv
 from quad_ident_ros.diagnose.carried import carried
 from quad_ident_ros.diagnose.diagnosis import diagnose
+from quad_ident_ros.diagnose.result import ShareClosed
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import SENSORS
 from quad_ident_ros.model.vehicle import load_vehicle, write_vehicle
-from quad_ident_ros.report.ceiling import ceiling_line, residual_line
+from quad_ident_ros.report.ceiling import ceiling_line, residual_line, share_of
 from quad_ident_ros.report.diagnosis import far_rows
 from quad_ident_ros.report.received import diagnosis_from
 
@@ -102,6 +103,12 @@ def test_the_ceiling_of_a_moment_is_told_by_the_rate():
     closed = f'{100 * ceiling.closed:.0f} ± '
     assert f'would close {closed}' in ceiling_line(one) and 'rate gap' in ceiling_line(one)
     assert closed in residual_line(one) and '% of the rate gap' in residual_line(one)
+
+
+@pytest.mark.parametrize(('std', 'said'), [
+    (0.096, '83 ± 10 %'), (1.34, '83 ± 100 %'), (0.004, '83 ± 0.4 %'), (None, '83 %')])
+def test_a_large_standard_error_is_written_without_an_exponent(std, said):
+    assert share_of(ShareClosed({}, 0.83, std, 'velocity')) == said
 
 
 def test_it_travels_as_data(found):

@@ -187,6 +187,14 @@ def test_sih_has_a_drag_of_all_axes_and_a_wind():
     assert read.effects == {'motor_lag': {'time_constant': 0.03}, 'wind': {'x': 1.0, 'y': -2.0}}
 
 
+def test_a_remark_on_a_parameter_stays_with_it_alone():
+    source = Source('10040_sih', 'param set SIH_MASS 0.75   # kg, weighed\r\n')
+    vehicle = read_vehicle(source).vehicle
+    found = export(with_effects(vehicle, motor_lag={'time_constant': 0.03}), 'px4_sih', source)
+    assert found.text.encode() == (b'param set SIH_T_TAU 0.03\r\n'
+                                   b'param set SIH_MASS 0.75   # kg, weighed\r\n')
+
+
 @pytest.mark.parametrize('line', ['1\t1\tSIH_MASS\t0.75\t9', 'x + SIH_MASS [123,456] : 0.75',
                                   'SIH_MASS,0.75'])
 def test_lists_of_parameters_keep_their_form(line):

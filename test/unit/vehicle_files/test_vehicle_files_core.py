@@ -160,10 +160,12 @@ def test_products_of_inertia_are_those_of_the_vehicle(tmp_path):
 @pytest.mark.parametrize('old, new, said', [
     ("'mass': 1.0 / 2", "'mass': measured()", 'line 4: measured() is not a number'),
     ("'mass': 1.0 / 2", "'mass': 10 ** 10 ** 10", 'line 4: 10 ** 10 ** 10 is not a number'),
+    ("'mass': 1.0 / 2", "'mass': None", 'line 4: mass: expected a number, it is empty'),
     ("'mass': 1.0 / 2", "'mass': -0.5", 'line 4: mass: -0.5 is out of range'),
     ("'k_m': 1e-7, ", '', 'has no k_m, which rotorpy needs; add it'),
     ("'Izz': 5e-3", "'Izz': 9e-3", 'line 5: no body has this inertia'),
     ("'Iyy': 4e-3", "'Iyy': 'a'", "line 5: Iyy: expected a number, got 'a'"),
+    ("'num_rotors': 4", "'num_rotors': 6", 'num_rotors is 6, and rotor_pos has 4 places; correct'),
     ('[1, -1, 1, -1]', '[1, -1, 1]', 'rotor_directions: expected a list of 4'),
     ('[1, -1, 1, -1]', '[1, -1, 1, 2]', 'rotor_directions: 2.0 is not one of 1, -1'),
     ('[1, -1, 1, -1]', '[1, -1, 1, -1.5]', 'rotor_directions: -1.5 is not one of 1, -1'),
@@ -198,6 +200,12 @@ def test_a_dictionary_that_is_changed_later_is_refused(change):
     line = PARAMETERS.count('\n') + 1
     said = refused(PARAMETERS + change + '\n', 'params.py')
     assert f'line {line}: quad_params is changed here' in said
+
+
+def test_an_entry_of_none_that_is_not_needed_is_passed_over():
+    text = PARAMETERS.replace("'num_rotors': 4", "'sensor': None, 'num_rotors': 4")
+    assert read_vehicle(Source('params.py', text)).vehicle == read_vehicle(
+        Source('params.py', PARAMETERS)).vehicle
 
 
 def test_what_stands_beside_a_dictionary_does_not_change_it():
@@ -305,6 +313,10 @@ def test_entities_that_stand_for_gigabytes_are_refused_at_once(tmp_path):
             '<robot>&a11;</robot>')
     with pytest.raises(InputError, match='line 1: a document type .DTD. is not read'):
         load_any_vehicle(written(tmp_path, text, 'bomb.urdf'))
+
+
+def test_an_empty_file_is_said_to_be_empty():
+    assert refused('\n', 'model.sdf') == 'model.sdf: the file is empty; save or copy it again'
 
 
 def test_kinds_are_told_by_content():

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Vehicles in MJCF models, by hand and as MuJoCo itself has them."""
 
+from dataclasses import replace
 import math
 
 import numpy as np
@@ -138,6 +139,7 @@ def test_of_two_vehicles_one_is_named():
     ('gear="0 0 1 0 0 -', 'gear="0 0.5 1 0 0 -', '26.6 deg off body z'),
     ('gear="0 0 1 0 0 -0.02', 'gear="0 0 1 0 0 -0.03', 'torque over thrust is 0.02, that of the'),
     ('class="quad" name="m0"', 'class="none" name="m0"', "no default class 'none' is in the"),
+    ('site="thrust0"', 'site="thrst0"', "<motor name='m0'>: no site 'thrst0' is in"),
     ('<light pos="0 0 2"/>', '<include file="x2.xml"/>', "<include>: 'x2.xml' is not beside"),
     ('<light pos="0 0 2"/>', '<replicate count="2"/>', '<replicate>: it is not expanded here'),
     (INERTIAL, '<geom type="mesh" mesh="frame" mass="1"/>', "the mesh 'frame', which is not read"),
@@ -173,6 +175,15 @@ def test_an_inertia_that_mujoco_balances_is_that_of_a_ball():
     assert reading(text).vehicle.inertia == pytest.approx([0.15] * 3, rel=1e-12)
 
 
+def test_an_inertia_below_the_bound_of_the_compiler_is_not_exported():
+    source = Source('quad.xml', model(before='<compiler boundinertia="0.025"/>'))
+    vehicle = read_vehicle(source).vehicle
+    assert vehicle.inertia == pytest.approx([0.025, 0.03, 0.04])
+    assert export(replace(vehicle, inertia=(0.026, 0.03, 0.04)), 'mujoco', source).changes
+    with pytest.raises(InputError, match='boundinertia or balanceinertia of <compiler> changes'):
+        export(replace(vehicle, inertia=(0.02, 0.03, 0.04)), 'mujoco', source)
+
+
 def test_forces_that_are_left_out_are_said():
     text = model().replace('<freejoint/>', '<joint type="free" damping="0.1"/>').replace(
         '<body name="quad"', '<body name="quad" gravcomp="0.5"')
@@ -190,6 +201,7 @@ def test_what_a_scene_includes_is_read(tmp_path):
     assert found.vehicle == reading(model()).vehicle
     places = {entry.key: entry.place for entry in found.read}
     assert places['mass'].startswith('x2.xml, line ')
+    assert places['rotors'].startswith('x2.xml, lines ')
     with pytest.raises(InputError, match='the vehicle stands in .*x2.xml, which it includes'):
         export(found.vehicle, 'mujoco', source_of(scene))
     scene.write_text('<mujoco>\n<include file="x2.xml"/>\n<include file="x2.xml"/></mujoco>')

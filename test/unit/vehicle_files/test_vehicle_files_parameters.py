@@ -259,6 +259,9 @@ def test_lists_of_parameters_in_other_forms_are_read(line):
 @pytest.mark.parametrize('old, new, said', [
     ('TYPE 0', 'TYPE 3', 'line 13: SIH_VEHICLE_TYPE 3 is a VTOL; expected 0'),
     ('SIH_MASS 0.8', 'SIH_MASS -1', 'line 4: SIH_MASS: -1 is out of range'),
+    ('SIH_MASS 0.8', 'SIH_MASS $mass', "line 4: SIH_MASS: expected a number, got '$mass'"),
+    ('SIH_MASS 0.8', 'SIH_MASS 0,8', "line 4: SIH_MASS: expected a number, got '0,8'"),
+    ('SIH_MASS 0.8', 'SIH_MASS 12kg', "line 4: SIH_MASS: expected a number, got '12kg'"),
     ('SIH_IXX 0.02', 'SIH_IXX 0.2', 'line 5: SIH_IXX'),
     ('SIH_T_MAX 4.5', 'SIH_T_MAX 0', 'line 7: SIH_T_MAX: a rotor that gives no thrust'),
 ])

@@ -210,6 +210,20 @@ def test_of_two_vehicles_in_a_world_one_is_named():
     assert read_vehicle(Source('model.sdf', text.format(''.join(inner)), 'two')).vehicle == alone
 
 
+def test_of_two_included_vehicles_one_is_named_by_the_name_that_the_world_gives(tmp_path):
+    (tmp_path / 'quad.sdf').write_text(WHOLE)
+    world = tmp_path / 'world.sdf'
+    includes = ''.join(f'<include><uri>quad.sdf</uri><name>{name}</name></include>'
+                       for name in ('one', 'two'))
+    world.write_text(f"<sdf version='1.9'><world name='w'>{includes}</world></sdf>")
+    assert 'several vehicles are in it (one, two); name one' in refused(
+        world.read_text(), str(world))
+    assert load_any_vehicle(f'{world}:two') == reading(WHOLE).vehicle
+    same = world.read_text().replace('two', 'one')
+    assert "<include>: a model 'one' appears twice; give each a <name>" in refused(
+        same, str(world))
+
+
 def test_seven_rotors_are_doubted_and_tilted_ones_refused():
     arms = [(0.3 * math.cos(angle), 0.3 * math.sin(angle))
             for angle in np.linspace(0, 2 * math.pi, 7, endpoint=False)]
@@ -227,6 +241,8 @@ def test_seven_rotors_are_doubted_and_tilted_ones_refused():
 @pytest.mark.parametrize('old, new, said', [
     ('<mass>2.0</mass>', '<mass>two</mass>', "line 8: <mass>: expected a number, got 'two'"),
     ('<mass>2.0</mass>', '<mass>-2</mass>', 'a mass of -2 kg is impossible'),
+    ('<mass>2.0</mass>', '', 'line 6: <inertial>: <mass> is missing; add it'),
+    ('<izz>0.04</izz>', '', 'line 9: <inertia>: <izz> is missing; add it'),
     ('<izz>0.04</izz>', '<izz>0.4</izz>', "line 6: <inertial> of link 'base_link': no body"),
     ('<jointName>rotor_1_joint', '<jointName>rotor_9_joint', "no joint 'rotor_9_joint' is in"),
     ('<linkName>rotor_1<', '<linkName>prop<', "no link 'prop' is in the model"),

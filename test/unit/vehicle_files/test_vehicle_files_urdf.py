@@ -80,6 +80,16 @@ def test_properties_of_gym_pybullet_drones_are_per_rpm():
     assert sum('is left out: it acts only with Physics.' in text for text in found.assumed) == 3
 
 
+def test_props_beyond_the_four_of_gym_pybullet_drones_are_said_to_carry_nothing():
+    more = SMALL.replace('</robot>', ''.join(PROP.format(k=k, x=0.01 * k, y=0) for k in (4, 5, 6))
+                         + '</robot>')
+    found = reading(more)
+    assert found.vehicle == reading(SMALL).vehicle
+    said = 'these carry nothing: prop4_link, prop5_link, prop6_link'
+    assert [text.endswith(said) for text in found.assumed].count(True) == 1
+    assert not any('carry nothing' in text for text in reading(SMALL).assumed)
+
+
 def test_a_plain_urdf_has_mass_and_places_and_asks_for_the_rest():
     found = reading(drone())
     assert list(found.missing) == ['thrust_coefficient', 'torque_coefficient', 'spins']
@@ -165,6 +175,7 @@ def test_links_stand_where_yourdfpy_has_them():
     ('<robot name="drone">', '<robot name="drone"><xacro:include filename="a"/>',
      'line 2: <xacro:include> is not expanded; run `xacro'),
     ('value="1.5"', 'value="many"', "line 4: <mass>: value: expected a number, got 'many'"),
+    ('value="1.5"', 'value="-1.5"', "line 4: <mass> of link 'base_link': a mass below 0 is"),
     ('izz="0.04"', 'izz="0.4"', "line 3: <link name='base_link'>: no body has this inertia"),
     ('<parent link="base_link"/>', '<parent link="bse"/>', "its parent 'bse' is not a link"),
     ('<link name="camera">', '<link name="base_link">', 'a name of its own for each link'),
