@@ -53,13 +53,13 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
     on_progress is called with the share done.
     Raises InputError where the records are too faulty to diagnose.
     """
-    given = flight_records('records', records)
-    vehicle_given(vehicle)
-    if hold_out is not None:
-        instance('hold_out', hold_out, FlightRecord, READ)
     for name in effects or ():
         if name not in EFFECTS:
             raise schema.unknown_key('effects', name, EFFECTS)
+    vehicle_given(vehicle)
+    given = flight_records('records', records)
+    if hold_out is not None:
+        instance('hold_out', hold_out, FlightRecord, READ)
 
     def told(share: float) -> None:     # flying in a simulator of the user takes as long
         on_progress(share if simulator is None else 0.5 * share)

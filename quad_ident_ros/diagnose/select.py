@@ -72,7 +72,9 @@ def select(flights: list[Flight], vehicle: Vehicle, causes: tuple[Candidate, ...
                 break
     search.settle()
     # A simpler set, or one within its bounds, may leave other errors than those it was weighed by.
-    if search.weigh_anew():
+    for _ in range(PASSES):
+        if not search.weigh_anew():
+            break
         search.look_among(causes, lambda share: None)
         search.settle()
     on_progress(1.0)
