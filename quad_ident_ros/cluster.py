@@ -33,6 +33,7 @@ TICK = 0.25         # s, after which a caller hears again that the work goes on
 GRACE = 3.0         # s from the end of a task's time to that of its process
 NO_WORKERS = 20.0   # s without any worker, after which those of this machine are started anew:
                     # Dask itself gives one up that could not be restarted on a busy machine
+FETCH = 5.0         # s for a result to come: its worker may have ended just after it was done
 REMEMBERED = 20     # messages, with the work in them, that each connection keeps for developers
 TIMES = 'quad_ident_times'
 """The topic on which a worker says that the time of a task is over."""
@@ -223,7 +224,7 @@ def _results(client: Any, function: Callable[[Item], Any], items: Iterable[Item]
                 future.add_done_callback(lambda one: news.put((one.key, False)))
             more = more and len(flying) >= most
             ended = {key: late for key, late in _all_of(news) if key in flying}
-            done = _done(client, {key: (*flying[key], late) for key, late in ended.items()})
+            done = _done({key: (*flying[key], late) for key, late in ended.items()})
             for key in ended.keys() - done.keys():      # it is being done again, elsewhere
                 flying[key][1].add_done_callback(lambda one: news.put((one.key, False)))
             for key in done:
@@ -246,18 +247,21 @@ def _all_of(news: queue.SimpleQueue) -> Iterator[Any]:
             yield news.get_nowait()
 
 
-def _done(client: Any, ended: dict[_Key, tuple[Item, Any, bool]]) -> dict[_Key, Done[Item]]:
+def _done(ended: dict[_Key, tuple[Item, Any, bool]]) -> dict[_Key, Done[Item]]:
     """
     Return {key: Done} of {key: (item, future, whether it was late)}.
 
-    What is lost with a worker that ended just after it is not done: Dask does it again.
+    What is lost with a worker that ended just after it is not done: Dask does it again, once there
+    is a worker, which the caller has to see to meanwhile.
     """
     from distributed.scheduler import KilledWorker
     found: dict[_Key, Done[Item]] = {}
-    finished = [one for _, one, late in ended.values() if not late and one.status == 'finished']
-    with suppress(Exception):       # of those that are lost; the others remain for the next time
-        found = {one.key: Done(ended[one.key][0], value) for one, value in
-                 zip(finished, client.gather(finished), strict=True)}
+    for key, (item, future, late) in ended.items():
+        if not late and future.status == 'finished':
+            try:
+                found[key] = Done(item, future.result(timeout=FETCH))
+            except Exception:       # it is lost, or its worker does not answer
+                break               # the others remain for the next time
     for key, (item, future, late) in ended.items():
         if late:
             future.cancel()

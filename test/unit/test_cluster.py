@@ -8,6 +8,7 @@ import re
 import signal
 import subprocess
 import sys
+import threading
 import time
 
 import numpy as np
@@ -121,6 +122,35 @@ def test_what_hangs_with_the_lock_of_python_is_ended_too(client):
     found = {done.item: done for done in results(client, hang_with_the_lock, range(2), LIMIT)}
     assert found[0].value == 0
     assert isinstance(found[1].error, WorkerDied | TimeOver)
+
+
+def test_a_result_whose_worker_does_not_answer_holds_up_nothing(monkeypatch):
+    """The worker may have ended just after it, and the last one of all: others are started."""
+    monkeypatch.setattr('quad_ident_ros.cluster.FETCH', 0.5)
+    with cluster(workers=1) as client:
+        [pid] = client.run(os.getpid).values()
+        fetched, late = [], []
+
+        def stopped(future):
+            os.kill(pid, signal.SIGSTOP)
+            threading.Timer(3.0, os.kill, (pid, signal.SIGCONT)).start()
+
+        def tick():
+            late.append(time.monotonic())
+
+        submit = client.submit
+
+        def stop_once_done(*args, **options):
+            future = submit(*args, **options)
+            if not fetched:
+                fetched.append(future)
+                future.add_done_callback(stopped)
+            return future
+
+        monkeypatch.setattr(client, 'submit', stop_once_done)
+        assert [done.value for done in results(client, square, [3], on_tick=tick)] == [9]
+    # The caller was heard of all the time, so it could have started workers.
+    assert len(late) >= 3 and np.diff(late).max() < 1.5
 
 
 def test_work_goes_on_where_no_worker_could_be_restarted(monkeypatch):
