@@ -94,7 +94,8 @@ class Reporter:
         self._write({'schema': 'quad_ident/fleet_run/1', 'out': str(self._out),
                      'flights': summary.flights, 'groups': groups, 'before': summary.before,
                      'copies': list(summary.copies), 'untracked': list(summary.untracked),
-                     'replaced': summary.replaced, 'gave_way': list(summary.gave_way)})
+                     'replaced': summary.replaced, 'gave_way': list(summary.gave_way),
+                     'kept': list(summary.kept)})
         if self._path != '-':
             sys.stdout.write(summary_text(summary, self._out))
 
@@ -151,6 +152,12 @@ def summary_text(summary: Summary, out: str | Path) -> str:
         lines.append(f'{counted(len(summary.copies), "file")} left out, whose content is that of '
                      f'another: {", ".join(summary.copies[:3])}'
                      + (' ...' if len(summary.copies) > 3 else ''))
+    if summary.kept:
+        count = len(summary.kept)
+        lines.append(f'{counted(count, "group")} not counted: '
+                     f'{"its result stays" if count == 1 else "their results stay"}, but flights '
+                     f'cannot be read any more: {", ".join(summary.kept[:3])}'
+                     + (' ...' if count > 3 else '') + '; bring them back, or no longer name them')
     if summary.replaced:
         lines.append(f'{counted(summary.replaced, "group")} not counted: another run has put the '
                      'flights into groups of its own meanwhile')

@@ -53,6 +53,14 @@ def test_the_end_says_what_became_of_all_groups_and_what_to_do():
         'out/groups']
 
 
+def test_the_end_says_which_results_stay_without_their_flights():
+    groups = {'diagnosed': 7, 'refused': 0, 'failed': 0, 'timeout': 0}
+    text = summary_text(Summary(12, groups, 7, (), kept=('/disk/b.csv',)), 'out')
+    assert text.splitlines()[1] == (
+        '1 group not counted: its result stays, but flights cannot be read any more: /disk/b.csv; '
+        'bring them back, or no longer name them')
+
+
 def test_the_end_says_which_groups_have_no_values_of_single_flights():
     groups = {'diagnosed': 7, 'refused': 0, 'failed': 0, 'timeout': 0}
     assert summary_text(Summary(12, groups, 0, (), ('it took long',) * 2), 'out').splitlines() == [
