@@ -77,9 +77,10 @@ def is_manifest(path: Path) -> bool:
     if path.suffix != '.csv':
         return False
     try:
-        with open(path, encoding='utf-8-sig', newline='') as file:
+        # In another encoding, too: that is said of a manifest, where a flight would be refused.
+        with open(path, encoding='utf-8-sig', errors='replace', newline='') as file:
             names = re.split('[,;\t]', file.readline(START).lower())
-    except (OSError, UnicodeDecodeError):
+    except OSError:
         return False
     return 'path' in (name.strip(' "\r\n') for name in names)
 
@@ -92,7 +93,7 @@ def _in_manifest(path: Path) -> Iterator[Listed]:
             if 'path' not in names:
                 raise InputError(f'{path}, line 1: there is no column `path`; write the names as '
                                  f'{",".join(COLUMNS)}, with commas, of which only path is needed')
-            if len(set(names)) < len(names):
+            if len(set(filter(None, names))) < sum(map(bool, names)):
                 raise InputError(f'{path}, line 1: a column is named twice; name each once')
             found: dict[str, Listed] = {}
             for row in reader:
@@ -112,9 +113,13 @@ def _entry(manifest: Path, line: int, names: Sequence[str], row: Sequence[str]) 
     if len(row) != len(names):
         raise InputError(f'{where}: {len(row)} cells, but {len(names)} columns; write one cell '
                          'for each')
-    cells = {name: cell.strip() for name, cell in zip(names, row, strict=True)}
-    if not cells['path']:
-        raise InputError(f'{where}, column path: it is empty; name a flight')
+    for number, (name, cell) in enumerate(zip(names, row, strict=True), 1):
+        if cell.strip() and not name:
+            raise InputError(f'{where}, column {number}: it has no name in line 1; name it, or '
+                             'leave it out (`index=False` of pandas)')
+    cells = {name: cell.strip() for name, cell in zip(names, row, strict=True) if name}
+    if not cells['path'] or '\0' in cells['path']:
+        raise InputError(f'{where}, column path: it is empty, or no name; name a flight')
     date = date_of(cells['date']) if cells.get('date') else None
     if cells.get('date') and date is None:
         raise InputError(f'{where}, column date: {schema.shown(cells["date"])} is not a date; '

@@ -36,9 +36,9 @@ def points(found: Insight) -> tuple[Point, ...]:
     Return what to look at, the most urgent first.
 
     What drifts away from the model, what changed, what drifts towards it, which vehicles are odd
-    or have an effect that most have not, what the model does not have for any vehicle, which flights were not diagnosed, which logs
-    cannot be used, or look wrong; last what is sure but in no verdict, for it hardly moves the
-    vehicle.
+    or have an effect that most have not, what the model does not have for any vehicle, which
+    flights were not diagnosed, which logs cannot be used, or look wrong; last what is sure but in
+    no verdict, for it hardly moves the vehicle.
     """
     groups: dict[str, list[Point]] = {why: [] for why in (WORSE, CHANGED, DRIFTS, DIFFERS, MODEL,
                                                           FAILED, LOGS, SUSPECT, SMALL)}

@@ -118,11 +118,25 @@ def test_a_manifest_says_all_of_a_flight(tmp_path):
     ('vehicle;path\nseven;a.csv\n', 'line 1: there is no column `path`; .* with commas'),
     ('Path,vehicle\na.csv,seven\n', 'line 1: there is no column `path`'),
     ('path,vehicle\na.csv,seven\na.csv,eight\n', 'line 3: .*a.csv is named above already'),
+    (',path\n0,a.csv\n', 'line 2, column 1: it has no name in line 1; .*index=False'),
+    ('path,vehicle\na\0.csv,seven\n', 'm.csv.*NUL|line 2, column path: it is empty, or no name'),
     ('path\n', 'there is no flight in it')])
 def test_what_is_wrong_with_a_manifest_is_said_with_its_place(tmp_path, text, said):
     with pytest.raises(InputError, match=said) as caught:
         listed([str(write(tmp_path / 'm.csv', text))])
     assert '\n' not in str(caught.value)
+
+
+def test_a_manifest_in_another_encoding_is_no_flight(tmp_path):
+    manifest = tmp_path / 'm.csv'
+    manifest.write_bytes('path,vehicle\na.csv,über\n'.encode('cp1252'))
+    with pytest.raises(InputError, match=r'm\.csv: cannot be read: .*expected a table in UTF-8'):
+        listed([str(manifest)])
+
+
+def test_empty_columns_at_the_end_of_a_manifest_do_no_harm(tmp_path):
+    one, = listed([str(write(tmp_path / 'm.csv', 'path,vehicle,,\na.csv,seven,,\n,,,\n'))])
+    assert (one.vehicle, one.covariates) == ('seven', {})
 
 
 def test_spaces_beside_commas_and_lines_that_repeat_do_no_harm(tmp_path):
