@@ -124,7 +124,8 @@ def line(progress: Progress, seconds: float) -> str:
     new = progress.done - progress.here
     parts = [f'{progress.stage}: {progress.done} of {progress.total} {what}']
     if new and seconds > 0.0:
-        parts.append(f'{60.0 * new / seconds:.3g} per minute')
+        rate = 60.0 * new / seconds
+        parts.append(f'{rate:{".3g" if rate < 999.5 else ".0f"}} per minute')
     left = seconds_left(progress, seconds)
     if left is not None:
         parts.append(f'{_span(left)} left')
