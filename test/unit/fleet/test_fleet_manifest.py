@@ -59,6 +59,15 @@ def test_folders_name_vehicle_configuration_and_day(tmp_path):
     assert {one.folder for one in found.values()} == {tmp_path.name}
 
 
+def test_flights_that_are_named_one_by_one_are_of_the_vehicle_of_their_folder(tmp_path):
+    """As a shell names them (flights/*/*/*.csv); a day is no vehicle, also if it is named."""
+    paths = [write(tmp_path / vehicle / '2026-05-14' / 'a.csv') for vehicle in ('seven', 'eight')]
+    assert [one.folder for one in listed(map(str, paths))] == ['seven', 'eight']
+    assert [one.folder for one in listed(str(path.parent) for path in paths)] == ['seven', 'eight']
+    manifest = write(tmp_path / 'm.csv', 'path\nseven/2026-05-14/a.csv\n../b.csv\n')
+    assert [one.folder for one in listed([str(manifest)])] == ['seven', tmp_path.parent.name]
+
+
 def test_the_nearest_vehicle_file_above_a_flight_is_its_nominal_one(tmp_path):
     fleets, own = write(tmp_path / 'vehicle.yaml', 'a: 1'), write(
         tmp_path / 'seven' / 'vehicle.yaml', 'a: 1')
