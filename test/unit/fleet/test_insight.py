@@ -197,6 +197,13 @@ def test_flights_of_one_date_stand_beside_one_another(tmp_path):
     assert len(places) == 5 and np.all(np.diff(places) > 30.0)
 
 
+def test_the_ends_of_a_scale_differ():
+    """As of a factor that is known to a thousandth."""
+    found, = histories([series(1.02 + 1e-4 * np.arange(5.0), 1e-4)])
+    high, low = re.findall('text-anchor="end">([0-9.]+)<', small_multiple(found, '', 1.0))
+    assert float(high) - float(low) == pytest.approx(8.8e-4, abs=1e-4)
+
+
 def test_what_failed_is_not_called_refused(tmp_path):
     """The next run tries it again, and its log may be right."""
     row = {'vehicle': 'uav1', 'configuration': '', 'date': START}
