@@ -67,7 +67,12 @@ def look(one: Listed, mapping: Mapping | None = None) -> Looked:
 def without_content(one: Listed, reason: str) -> Looked:
     """Return the entry of a file that cannot be read: its path stands for its content."""
     path = str(Path(one.path).resolve())
-    return Looked(path, 0, 0, hashlib.sha256(os.fsencode(path)).hexdigest(), reason=reason)
+    return Looked(path, 0, 0, content_unknown(path), reason=reason)
+
+
+def content_unknown(path: str) -> str:
+    """Return what stands for the content of a file that cannot be read: SHA-256 of its path."""
+    return hashlib.sha256(os.fsencode(path)).hexdigest()
 
 
 def date_of_file(looked: Looked) -> datetime:

@@ -14,7 +14,7 @@ from quad_ident_ros import schema
 from quad_ident_ros.data.readers.others import START
 from quad_ident_ros.data.readers.registry import READERS
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.fleet.dates import date_of
+from quad_ident_ros.fleet.dates import date_of, is_day
 from quad_ident_ros.fleet.folders import whose
 
 COLUMNS = ('path', 'vehicle', 'configuration', 'date', 'group', 'vehicle_file')
@@ -31,9 +31,9 @@ class Listed:
     """
     A flight as it was named; '' and None: the log is asked.
 
-    folder: the name of the folder that was searched, which is the vehicle where nothing else says
-    which; group: what is diagnosed together instead of a day; vehicle_file: the nominal vehicle;
-    place: file and line of a manifest.
+    folder: the name of the folder that was searched, or of a flight that was named, which is the
+    vehicle where nothing else says which; group: what is diagnosed together instead of a day;
+    vehicle_file: the nominal vehicle; place: file and line of a manifest.
     """
 
     path: str
@@ -61,7 +61,8 @@ def listed(names: Iterable[str]) -> list[Listed]:
             raise InputError(f'{name}: there is no such file or folder; name flights, a folder of '
                              'them or a manifest')
         if _is_bag(path) or path.is_file() and not is_manifest(path):
-            some: Iterable[Listed] = [Listed(str(path), vehicle_file=_nominal_in(path.parent))]
+            some: Iterable[Listed] = [Listed(str(path), vehicle_file=_nominal_in(path.parent),
+                                             folder=_own_name(path.parent))]
         else:
             some = _in_folder(path) if path.is_dir() else _in_manifest(path)
         for one in some:
@@ -77,9 +78,10 @@ def is_manifest(path: Path) -> bool:
     if path.suffix != '.csv':
         return False
     try:
-        with open(path, encoding='utf-8-sig', newline='') as file:
+        # In another encoding, too: that is said of a manifest, where a flight would be refused.
+        with open(path, encoding='utf-8-sig', errors='replace', newline='') as file:
             names = re.split('[,;\t]', file.readline(START).lower())
-    except (OSError, UnicodeDecodeError):
+    except OSError:
         return False
     return 'path' in (name.strip(' "\r\n') for name in names)
 
@@ -92,7 +94,7 @@ def _in_manifest(path: Path) -> Iterator[Listed]:
             if 'path' not in names:
                 raise InputError(f'{path}, line 1: there is no column `path`; write the names as '
                                  f'{",".join(COLUMNS)}, with commas, of which only path is needed')
-            if len(set(names)) < len(names):
+            if len(set(filter(None, names))) < sum(map(bool, names)):
                 raise InputError(f'{path}, line 1: a column is named twice; name each once')
             found: dict[str, Listed] = {}
             for row in reader:
@@ -112,9 +114,13 @@ def _entry(manifest: Path, line: int, names: Sequence[str], row: Sequence[str]) 
     if len(row) != len(names):
         raise InputError(f'{where}: {len(row)} cells, but {len(names)} columns; write one cell '
                          'for each')
-    cells = {name: cell.strip() for name, cell in zip(names, row, strict=True)}
-    if not cells['path']:
-        raise InputError(f'{where}, column path: it is empty; name a flight')
+    for number, (name, cell) in enumerate(zip(names, row, strict=True), 1):
+        if cell.strip() and not name:
+            raise InputError(f'{where}, column {number}: it has no name in line 1; name it, or '
+                             'leave it out (`index=False` of pandas)')
+    cells = {name: cell.strip() for name, cell in zip(names, row, strict=True) if name}
+    if not cells['path'] or '\0' in cells['path']:
+        raise InputError(f'{where}, column path: it is empty, or no name; name a flight')
     date = date_of(cells['date']) if cells.get('date') else None
     if cells.get('date') and date is None:
         raise InputError(f'{where}, column date: {schema.shown(cells["date"])} is not a date; '
@@ -127,7 +133,7 @@ def _entry(manifest: Path, line: int, names: Sequence[str], row: Sequence[str]) 
     return Listed(path, cells.get('vehicle', ''), cells.get('configuration', ''), date, '',
                   cells.get('group', ''),
                   str(beside) if nominal and beside.is_file() else nominal,
-                  manifest.absolute().parent.name, covariates, where)
+                  _own_name(Path(path).parent), covariates, where)
 
 
 def _covariate(where: str, name: str, cell: str) -> float:
@@ -141,13 +147,20 @@ def _covariate(where: str, name: str, cell: str) -> float:
 
 def _in_folder(top: Path) -> Iterator[Listed]:
     """Yield the flights below a folder, which the folders between say more of."""
+    name = _own_name(top)
     for path, nominal in _below(top, '', frozenset()):
         folders = path.relative_to(top).parts[:-1]
         if _is_of_open_bag(path):
             folders = folders[:-1]
         vehicle, configuration, day = whose(folders)
         yield Listed(str(path), vehicle, configuration, day=day, vehicle_file=nominal,
-                     folder=top.absolute().name)
+                     folder=name)
+
+
+def _own_name(folder: Path) -> str:
+    """Return the name of a folder, or of the next one above that is no day."""
+    whole = Path(os.path.abspath(folder))       # without a `..`, which is no name
+    return next(one.name for one in (whole, *whole.parents) if not is_day(one.name))
 
 
 def _below(folder: Path, nominal: str, above: frozenset[str]) -> Iterator[tuple[Path, str]]:

@@ -21,6 +21,7 @@ from quad_ident_ros.fleet.plan import Plan
 from quad_ident_ros.fleet.store import keys_of, missing, prepare, read_table
 from quad_ident_ros.fleet.superseded import (
     give_way,
+    out_of_reach,
     remove_group,
     remove_trackings,
     replaced_in,
@@ -81,7 +82,8 @@ class Summary:
     before: groups that were done; untracked: reasons of the groups to whose single flights nothing
     could be fitted, which the next run tries again; replaced: groups whose flights another run has
     put into groups of its own; gave_way: why groups of this run have no result, because one of
-    another run has some of their flights.
+    another run has some of their flights; kept: for each group whose results stay as they were, a
+    flight of it that cannot be read any more.
     """
 
     flights: int
@@ -91,6 +93,7 @@ class Summary:
     untracked: tuple[str, ...] = ()
     replaced: int = 0
     gave_way: tuple[str, ...] = ()
+    kept: tuple[str, ...] = ()
 
 
 Tell = Callable[[Progress], None]
@@ -133,15 +136,17 @@ def run_fleet(client: Any, plan: Plan, out: str | Path, *, time_limit: float = T
     looked = _looked(client, plan.flights, plan.mapping, out, time_limit, tell)
     groups, copies = groups_of(zip(plan.flights, looked, strict=True), plan.nominal_of,
                                plan.mapping, plan.rules)
+    kept = out_of_reach(groups, out)
+    groups = [group for group in groups if group.key not in kept]
     before, went = _diagnose_all(client, groups, out, time_limit, tell)
     replaced = _check_written([group for group in groups if group.key not in went], out)
     untracked = _track_all(client, groups, out, time_limit, tell)
     status = _statuses(out)
     ended = [status.get(group.key) for group in groups]
-    return Summary(len(plan.flights) - len(copies), {name: ended.count(name) for name in
-                                                     (DIAGNOSED, REFUSED, FAILED, TIMEOUT)},
+    return Summary(sum(len(group.flights) for group in groups),
+                   {name: ended.count(name) for name in (DIAGNOSED, REFUSED, FAILED, TIMEOUT)},
                    before, tuple(one.path for one in copies), untracked, len(replaced),
-                   tuple(went.values()))
+                   tuple(went.values()), tuple(kept.values()))
 
 
 def _looked(client: Any, flights: Sequence[Listed], mapping: Mapping | None, out: str | Path,

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.fleet.grouping import Group
+from quad_ident_ros.fleet.look import content_unknown
 from quad_ident_ros.fleet.store import keys_of, read_rows, read_table, remove
 
 BY_GROUP = 'groups', 'flights', 'effects'
@@ -40,6 +41,19 @@ def superseded_by(groups: Iterable[Group], out: str | Path) -> dict[str, list[st
             f'{one.path}: it was diagnosed together with flights that are named now; name it, '
             'too (the folder or manifest with all flights), or give another --out')
     return found
+
+
+def out_of_reach(groups: Iterable[Group], out: str | Path) -> dict[str, str]:
+    """
+    Return {key of a group: path of a flight that cannot be read now, but has a result}.
+
+    A disk that is not mounted, or a log that was moved away, takes no result with it.
+    """
+    table = read_table(out, 'flights', ['flight', 'path'])
+    known = {path for flight, path in zip(table['flight'].to_pylist(), table['path'].to_pylist(),
+                                          strict=True) if flight != content_unknown(path)}
+    return {group.key: flight.path for group in groups for flight in reversed(group.flights)
+            if flight.path in known and flight.flight == content_unknown(flight.path)}
 
 
 def give_way(groups: Sequence[Group], out: str | Path, done: Collection[str]

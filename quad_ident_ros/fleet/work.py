@@ -20,6 +20,7 @@ from quad_ident_ros.diagnose.intake import take_in
 from quad_ident_ros.diagnose.result import Diagnosis
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.fleet.grouping import Group, Member, rules_hash
+from quad_ident_ros.fleet.look import content_unknown
 from quad_ident_ros.fleet.store import read_rows, write_rows
 from quad_ident_ros.memory import give_back
 from quad_ident_ros.report.data import finite
@@ -62,9 +63,10 @@ def work(group: Group, out: str | Path) -> Outcome:
     if (stored := outcome_of(group, out)) is not None:
         return stored
     begun = perf_counter()
-    reads = [_read(member, group) for member in group.flights]
+    reads: list[_Read] = []
     found, reason = None, ''
     try:
+        reads = [_read(member, group) for member in group.flights]
         reads, found, reason = _diagnosed(reads, group)
         status = REFUSED if found is None else DIAGNOSED
     except Exception as error:      # of a library: it takes no other group with it
@@ -118,6 +120,9 @@ def _read(member: Member, group: Group) -> _Read:
     try:
         return _Read(member, tuple(load_all(member.path, group.mapping, group.nominal)))
     except InputError as error:
+        if member.flight != content_unknown(member.path) and not Path(member.path).exists():
+            raise FileNotFoundError(f'{member.path}: it is not there any more, or not where this '
+                                    'worker looks; share the folder with all workers') from None
         return _Read(member, (), one_line(error))
     except Exception as error:      # of a library: it takes no other flight with it
         return _Read(member, (), f'{member.path}: {type(error).__name__} while it was read')

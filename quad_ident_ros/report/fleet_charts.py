@@ -4,6 +4,7 @@
 
 from collections.abc import Callable, Iterable
 from html import escape
+import math
 
 import numpy as np
 
@@ -45,8 +46,10 @@ def small_multiple(one: History, unit: str, factor: float) -> Markup:
     for change in one.changes:
         at = 0.5 * (x[change.place - 1] + x[change.place])
         parts.append(_line('change', f'M{at:.1f} {TOP}V{HIGH - FOOT}'))
-    parts += [_text(LEFT - 4, y(high) + 8, 'end', f'{factor * high:.3g}'),
-              _text(LEFT - 4, y(low), 'end', f'{factor * low:.3g}'),
+    # As many digits as tell the two apart: thrust of 1.0195 from one of 1.0205.
+    digits = max(3, 2 + math.ceil(math.log10(max(abs(low), abs(high)) / (high - low))))
+    parts += [_text(LEFT - 4, y(high) + 8, 'end', f'{factor * high:.{digits}g}'),
+              _text(LEFT - 4, y(low), 'end', f'{factor * low:.{digits}g}'),
               _text(LEFT, HIGH - 4, 'start', _day(series.t[0])),
               _text(WIDE - RIGHT, HIGH - 4, 'end', _day(series.t[-1]))]
     return Markup(f'<svg class="small" viewBox="0 0 {WIDE:g} {HIGH:g}" role="img" aria-label="'

@@ -94,7 +94,8 @@ class Reporter:
         self._write({'schema': 'quad_ident/fleet_run/1', 'out': str(self._out),
                      'flights': summary.flights, 'groups': groups, 'before': summary.before,
                      'copies': list(summary.copies), 'untracked': list(summary.untracked),
-                     'replaced': summary.replaced, 'gave_way': list(summary.gave_way)})
+                     'replaced': summary.replaced, 'gave_way': list(summary.gave_way),
+                     'kept': list(summary.kept)})
         if self._path != '-':
             sys.stdout.write(summary_text(summary, self._out))
 
@@ -123,7 +124,8 @@ def line(progress: Progress, seconds: float) -> str:
     new = progress.done - progress.here
     parts = [f'{progress.stage}: {progress.done} of {progress.total} {what}']
     if new and seconds > 0.0:
-        parts.append(f'{60.0 * new / seconds:.3g} per minute')
+        rate = 60.0 * new / seconds
+        parts.append(f'{rate:{".3g" if rate < 999.5 else ".0f"}} per minute')
     left = seconds_left(progress, seconds)
     if left is not None:
         parts.append(f'{_span(left)} left')
@@ -151,6 +153,12 @@ def summary_text(summary: Summary, out: str | Path) -> str:
         lines.append(f'{counted(len(summary.copies), "file")} left out, whose content is that of '
                      f'another: {", ".join(summary.copies[:3])}'
                      + (' ...' if len(summary.copies) > 3 else ''))
+    if summary.kept:
+        count = len(summary.kept)
+        lines.append(f'{counted(count, "group")} not counted: '
+                     f'{"its result stays" if count == 1 else "their results stay"}, but flights '
+                     f'cannot be read any more: {", ".join(summary.kept[:3])}'
+                     + (' ...' if count > 3 else '') + '; bring them back, or no longer name them')
     if summary.replaced:
         lines.append(f'{counted(summary.replaced, "group")} not counted: another run has put the '
                      'flights into groups of its own meanwhile')

@@ -35,10 +35,10 @@ def points(found: Insight) -> tuple[Point, ...]:
     """
     Return what to look at, the most urgent first.
 
-    What drifts away from the model, what changed, what drifts towards it, which vehicles are odd,
-    what the model does not have for any vehicle, which flights were not diagnosed, which logs
-    cannot be used, or look wrong; last what is sure but in no verdict, for it hardly moves the
-    vehicle.
+    What drifts away from the model, what changed, what drifts towards it, which vehicles are odd
+    or have an effect that most have not, what the model does not have for any vehicle, which
+    flights were not diagnosed, which logs cannot be used, or look wrong; last what is sure but in
+    no verdict, for it hardly moves the vehicle.
     """
     groups: dict[str, list[Point]] = {why: [] for why in (WORSE, CHANGED, DRIFTS, DIFFERS, MODEL,
                                                           FAILED, LOGS, SUSPECT, SMALL)}
@@ -55,6 +55,13 @@ def points(found: Insight) -> tuple[Point, ...]:
         groups[DIFFERS if odd.material else SMALL].append(
             Point(DIFFERS, with_configuration(odd.sister.vehicle, odd.configuration),
                   odd_line(odd) + _small(odd.material)))
+    told = since | {(odd.configuration, odd.sister.vehicle, odd.effect) for odd in found.odd}
+    for one in found.present:
+        names = [name for name in one.having if (one.configuration, name, one.effect) not in told]
+        if names and one.vehicles > 1 and not one.shared:
+            groups[DIFFERS].append(Point(
+                DIFFERS, with_configuration(listed(names), one.configuration),
+                few_line(one, names, found)))
     groups[MODEL] += [Point(MODEL, 'all', shared_line(one, found)) for one in found.present
                       if one.shared]
     groups[FAILED] += _logs(found, FAILED)
@@ -139,6 +146,21 @@ def shared_line(one: Presence, found: Insight) -> str:
     remedy = ('add it to the vehicle file' if values else
               'give each vehicle a file of its own with what its diagnosis finds')
     return (f'{of_vehicles(one)} vehicles have {titled(one.effect)}{told}{share}: {remedy}')
+
+
+def few_line(one: Presence, names: Sequence[str], found: Insight) -> str:
+    """Return a sentence on an effect that most vehicles have not, with its sizes in `names`."""
+    sizes: dict[str, list[str]] = {name: [] for name in names}
+    for each in found.sisters:
+        if (each.configuration, each.effect) == (one.configuration, one.effect):
+            for sister in each.vehicles:
+                if sister.vehicle in sizes:
+                    sizes[sister.vehicle].append(
+                        f'{each.parameter} {sized(sister.value, sister.std, each.unit)}')
+    known = [f'{name} {", ".join(some)}' for name, some in sizes.items() if some]
+    return (f'{of_vehicles(one)} vehicles {"has" if len(one.having) == 1 else "have"} '
+            f'{titled(one.effect)} in most verdicts, the others do not'
+            + (f': {"; ".join(known[:NAMED])}' if known else ''))
 
 
 def null_of(effect: str, parameter: str) -> float:

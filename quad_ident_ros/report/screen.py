@@ -12,7 +12,7 @@ from rich.cells import cell_len
 from rich.console import Console, RenderableType
 from rich.measure import Measurement
 from rich.progress import BarColumn, Progress, TextColumn
-from rich.table import Table
+from rich.table import Column, Table
 from rich.text import Text
 
 WIDTH = 150   # columns of what is no terminal: as many as a table may need
@@ -51,8 +51,9 @@ def table_of(titles: Iterable[str], rows: Iterable[Sequence[str]],
 
 def progress_bar(quiet: bool = False) -> Progress:
     """Return a progress bar on standard error that goes away at the end; quiet: none."""
-    return _Bar(TextColumn('{task.description}', markup=False), BarColumn(),
-                TextColumn('{task.percentage:>3.0f} %'), transient=True,
+    # On a narrow terminal the text goes on in a line below: its end says what failed.
+    return _Bar(TextColumn('{task.description}', markup=False, table_column=Column()),
+                BarColumn(20), TextColumn('{task.percentage:>3.0f} %'), transient=True,
                 console=_plain_or_coloured(sys.stderr),
                 disable=quiet or not sys.stderr.isatty())
 

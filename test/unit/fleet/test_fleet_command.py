@@ -4,11 +4,13 @@
 
 from contextlib import nullcontext
 from dataclasses import replace
+import io
 import json
 from types import SimpleNamespace
 
 from full_disk import file_size_limit
 import pytest
+from rich.console import Console
 
 from quad_ident_ros import cluster
 from quad_ident_ros.cli.main import main, parser
@@ -25,6 +27,7 @@ from quad_ident_ros.report.fleet_run import (  # noqa: E402, I100
     seconds_left,
     summary_text,
 )
+from quad_ident_ros.report.screen import progress_bar  # noqa: E402, I100
 
 HALF = Progress(DIAGNOSING, total=100, done=50, here=20)
 
@@ -35,6 +38,21 @@ def test_a_line_says_how_much_is_done_how_fast_and_what_went_wrong():
     assert line(Progress(DIAGNOSING, 100, 20, 20), 5.0) == 'diagnosing: 20 of 100 groups'
     assert line(Progress(COMPARING, 40, 10), 5.0) == (
         'comparing: 10 of 40 parameters of vehicles, 120 per minute, 15 s left')
+
+
+def test_a_line_has_no_power_of_ten():
+    assert '2917 per minute' in line(Progress(DIAGNOSING, 10000, 2917), 60.0)
+
+
+@pytest.mark.parametrize('width', [40, 80])
+def test_no_end_of_the_line_is_cut_on_a_narrow_terminal(width):
+    text = line(Progress(DIAGNOSING, 1000, 500, 20, refused=30, failed=12), 6000.0)
+    bar = progress_bar()
+    bar.add_task(text, total=1000)
+    screen = Console(width=width, file=io.StringIO())
+    screen.print(bar.get_renderable())
+    shown = screen.file.getvalue()
+    assert set(text.split()) <= set(shown.split()) and '0 %' in shown
 
 
 def test_the_time_left_counts_what_was_done_in_this_run_alone():
@@ -51,6 +69,14 @@ def test_the_end_says_what_became_of_all_groups_and_what_to_do():
         '1 file left out, whose content is that of another: b.csv',
         'the same command tries again what failed; the reasons are in the column reason of '
         'out/groups']
+
+
+def test_the_end_says_which_results_stay_without_their_flights():
+    groups = {'diagnosed': 7, 'refused': 0, 'failed': 0, 'timeout': 0}
+    text = summary_text(Summary(12, groups, 7, (), kept=('/disk/b.csv',)), 'out')
+    assert text.splitlines()[1] == (
+        '1 group not counted: its result stays, but flights cannot be read any more: /disk/b.csv; '
+        'bring them back, or no longer name them')
 
 
 def test_the_end_says_which_groups_have_no_values_of_single_flights():

@@ -59,6 +59,15 @@ def test_folders_name_vehicle_configuration_and_day(tmp_path):
     assert {one.folder for one in found.values()} == {tmp_path.name}
 
 
+def test_flights_that_are_named_one_by_one_are_of_the_vehicle_of_their_folder(tmp_path):
+    """As a shell names them (flights/*/*/*.csv); a day is no vehicle, also if it is named."""
+    paths = [write(tmp_path / vehicle / '2026-05-14' / 'a.csv') for vehicle in ('seven', 'eight')]
+    assert [one.folder for one in listed(map(str, paths))] == ['seven', 'eight']
+    assert [one.folder for one in listed(str(path.parent) for path in paths)] == ['seven', 'eight']
+    manifest = write(tmp_path / 'm.csv', 'path\nseven/2026-05-14/a.csv\n../b.csv\n')
+    assert [one.folder for one in listed([str(manifest)])] == ['seven', tmp_path.parent.name]
+
+
 def test_the_nearest_vehicle_file_above_a_flight_is_its_nominal_one(tmp_path):
     fleets, own = write(tmp_path / 'vehicle.yaml', 'a: 1'), write(
         tmp_path / 'seven' / 'vehicle.yaml', 'a: 1')
@@ -118,11 +127,25 @@ def test_a_manifest_says_all_of_a_flight(tmp_path):
     ('vehicle;path\nseven;a.csv\n', 'line 1: there is no column `path`; .* with commas'),
     ('Path,vehicle\na.csv,seven\n', 'line 1: there is no column `path`'),
     ('path,vehicle\na.csv,seven\na.csv,eight\n', 'line 3: .*a.csv is named above already'),
+    (',path\n0,a.csv\n', 'line 2, column 1: it has no name in line 1; .*index=False'),
+    ('path,vehicle\na\0.csv,seven\n', 'm.csv.*NUL|line 2, column path: it is empty, or no name'),
     ('path\n', 'there is no flight in it')])
 def test_what_is_wrong_with_a_manifest_is_said_with_its_place(tmp_path, text, said):
     with pytest.raises(InputError, match=said) as caught:
         listed([str(write(tmp_path / 'm.csv', text))])
     assert '\n' not in str(caught.value)
+
+
+def test_a_manifest_in_another_encoding_is_no_flight(tmp_path):
+    manifest = tmp_path / 'm.csv'
+    manifest.write_bytes('path,vehicle\na.csv,über\n'.encode('cp1252'))
+    with pytest.raises(InputError, match=r'm\.csv: cannot be read: .*expected a table in UTF-8'):
+        listed([str(manifest)])
+
+
+def test_empty_columns_at_the_end_of_a_manifest_do_no_harm(tmp_path):
+    one, = listed([str(write(tmp_path / 'm.csv', 'path,vehicle,,\na.csv,seven,,\n,,,\n'))])
+    assert (one.vehicle, one.covariates) == ('seven', {})
 
 
 def test_spaces_beside_commas_and_lines_that_repeat_do_no_harm(tmp_path):

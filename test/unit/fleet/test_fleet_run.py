@@ -175,6 +175,43 @@ def test_each_flight_of_a_group_that_is_refused_has_its_reason(flight, tmp_path,
     assert long['duration_s'] == pytest.approx(9.9)
 
 
+def test_results_of_flights_that_cannot_be_read_any_more_stay(flight, tmp_path, monkeypatch):
+    """As of a disk that is not mounted; with a manifest, which names them still."""
+    elsewhere(monkeypatch, tmp_path, lambda given, item: given(item))
+    manifest = tmp_path / 'm.csv'
+    manifest.write_text(f'path\n{flight}\n{tmp_path / "never.csv"}\n')
+    plan = planned([str(manifest)], vehicle='hummingbird')
+    run.run_fleet(None, plan, 'fleet')
+    before = read_table('fleet', 'flights').to_pylist()
+    flight.rename(tmp_path / 'away')
+    summary = run.run_fleet(None, plan, 'fleet')
+    assert read_table('fleet', 'flights').to_pylist() == before
+    assert summary.kept == (str(flight),)
+    assert summary.flights == summary.groups['refused'] == 1        # what was never there
+    (tmp_path / 'away').rename(flight)
+    summary = run.run_fleet(None, plan, 'fleet')
+    assert summary.kept == () and summary.before == 2
+
+
+def test_a_flight_that_is_not_where_a_worker_looks_is_tried_again(flight, tmp_path, monkeypatch):
+    def lost(given, item):
+        away = tmp_path / 'away'
+        if isinstance(item, Group):
+            flight.rename(away)
+        value = given(item)
+        if away.exists():
+            away.rename(flight)
+        return value
+
+    plan = planned(['flights'], vehicle='hummingbird')
+    elsewhere(monkeypatch, tmp_path, lost)
+    assert run.run_fleet(None, plan, 'fleet').groups['failed'] == 1
+    reason, = read_table('fleet', 'groups')['reason'].to_pylist()
+    assert f'{flight}: it is not there any more' in reason
+    elsewhere(monkeypatch, tmp_path, lambda given, item: given(item))
+    assert run.run_fleet(None, plan, 'fleet').groups['refused'] == 1
+
+
 def test_a_nominal_vehicle_that_is_wrong_is_said_with_its_line(tmp_path):
     (tmp_path / 'quad.yaml').write_text('a: 1')
     manifest = tmp_path / 'm.csv'

@@ -57,6 +57,30 @@ def test_what_happened_is_found_and_dated(found):
     assert {one.effect for one in found.present if one.shared} == {'rotor_drag', 'com_offset'}
 
 
+def test_an_effect_that_few_vehicles_have_is_listed(tmp_path):
+    """It is followed in these alone, so that no sister's value is beside theirs."""
+    for number in range(6):
+        dated = {'group': f'{number}', 'vehicle': f'uav{number}', 'configuration': '',
+                 'date': START}
+        having = number == 2
+        write_rows(tmp_path, 'groups', f'{number}', [dated | {
+            'flights': 1, 'status': 'diagnosed',
+            'verdict': ['thrust_scale'] if having else ['none']}])
+        write_rows(tmp_path, 'effects', f'{number}', [dated | {
+            'effect': 'thrust_scale', 'probability': float(having), 'contribution': 1.0,
+            'form': 'scale', 'named': having, 'minor': False}])
+        write_rows(tmp_path, 'flights', f'{number}', [dated | {
+            'flight': f'{number}', 'path': f'{number}.csv', 'status': 'diagnosed'}])
+    write_rows(tmp_path, 'parameters', '2', [{
+        'flight': '2', 'group': '2', 'vehicle': 'uav2', 'configuration': '', 'date': START,
+        'effect': 'thrust_scale', 'parameter': 'factor', 'unit': '1', 'value': 0.93,
+        'std': 0.001}])
+    one, = points(insight(tmp_path))
+    assert (one.why, one.where) == ('differs from its sisters', 'uav2')
+    assert one.text.startswith('1 of 6 vehicles has ')
+    assert 'uav2 factor 0.930' in one.text
+
+
 def test_refused_flights_take_no_part(found):
     """The first flight of the first vehicle is listed with its reason and is in no series."""
     assert found.refused == (('uav1', '0.csv', 'this is not text'),)
@@ -171,6 +195,13 @@ def test_flights_of_one_date_stand_beside_one_another(tmp_path):
     dots = re.search('class="dots" d="([^"]*)"', small_multiple(found, '', 1.0))[1]
     places = [float(place) for place in re.findall(r'M([\d.]+) ', dots)]
     assert len(places) == 5 and np.all(np.diff(places) > 30.0)
+
+
+def test_the_ends_of_a_scale_differ():
+    """As of a factor that is known to a thousandth."""
+    found, = histories([series(1.02 + 1e-4 * np.arange(5.0), 1e-4)])
+    high, low = re.findall('text-anchor="end">([0-9.]+)<', small_multiple(found, '', 1.0))
+    assert float(high) - float(low) == pytest.approx(8.8e-4, abs=1e-4)
 
 
 def test_what_failed_is_not_called_refused(tmp_path):
