@@ -22,6 +22,8 @@ COLUMNS = ('path', 'vehicle', 'configuration', 'date', 'group', 'vehicle_file')
 
 TABLES = ('.csv', '.csv.gz', '.tsv')    # the other kinds of flights are seen by their first bytes
 BAGS = '.mcap', '.db3'      # in the folder of a bag, which has its name
+ABOUT = 'fleet.json'
+"""The file in the folder of a data set that says how it is made; its tables are no flights."""
 VEHICLE_FILE = 'vehicle.yaml'
 """The nominal vehicle in the folder of its flights, or in one above."""
 
@@ -180,7 +182,7 @@ def _below(folder: Path, nominal: str, above: frozenset[str]) -> Iterator[tuple[
         if entry.name.startswith('.'):
             continue
         if path.is_dir() and not _is_bag(path):
-            if os.path.realpath(path) not in within:
+            if os.path.realpath(path) not in within and not (path / ABOUT).is_file():
                 yield from _below(path, nominal, within)
         elif path.is_dir() or path.is_file() and _is_flight(path):
             yield path, nominal

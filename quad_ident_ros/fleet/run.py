@@ -16,7 +16,7 @@ from quad_ident_ros.data.mapping import Mapping
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.fleet.grouping import Group, groups_of
 from quad_ident_ros.fleet.look import look, Looked, Looks, without_content
-from quad_ident_ros.fleet.manifest import Listed
+from quad_ident_ros.fleet.manifest import ABOUT, Listed
 from quad_ident_ros.fleet.plan import Plan
 from quad_ident_ros.fleet.store import keys_of, missing, prepare, read_table
 from quad_ident_ros.fleet.superseded import (
@@ -132,7 +132,7 @@ def run_fleet(client: Any, plan: Plan, out: str | Path, *, time_limit: float = T
     """
     out = Path(out).absolute()      # workers are started in folders of their own
     prepare(out)
-    write_whole(out / 'fleet.json', json.dumps(plan.origin, indent=2) + '\n')
+    write_whole(out / ABOUT, json.dumps(plan.origin, indent=2) + '\n')
     looked = _looked(client, plan.flights, plan.mapping, out, time_limit, tell)
     groups, copies = groups_of(zip(plan.flights, looked, strict=True), plan.nominal_of,
                                plan.mapping, plan.rules)

@@ -95,6 +95,13 @@ def test_a_bag_that_is_still_recorded_to_is_no_configuration(tmp_path):
     assert (one.vehicle, one.configuration, one.day) == ('seven', '', '2026-05-14')
 
 
+def test_the_results_of_a_fleet_among_its_flights_are_no_flights(tmp_path):
+    flight = write(tmp_path / 'seven' / 'a.csv')
+    write(tmp_path / 'seven' / 'results' / 'fleet.json', '{}')
+    write(tmp_path / 'seven' / 'results' / 'groups' / 'a.csv')
+    assert [one.path for one in listed([str(tmp_path)])] == [str(flight)]
+
+
 def test_links_that_lead_back_or_nowhere_end_nothing(tmp_path):
     flight = write(tmp_path / 'seven' / 'a.csv')
     (tmp_path / 'seven' / 'all').symlink_to(tmp_path)
