@@ -5,7 +5,7 @@
 from quad_ident_ros.effects.base import Form, Parameter
 
 FORM = Form(
-    name='heading', title='heading that is off',
+    name='heading', title='heading offset',
     parameters=(Parameter('heading', 'rad', -0.8, 0.8, 0.03, 'rotation about the vertical from '
                           'the axes of position and velocity to those of the recorded attitude'),),
     source='measured attitude = turn about the vertical * attitude: a compass beside iron or '

@@ -85,11 +85,11 @@ def fit(records: Sequence[FlightRecord], vehicle: Vehicle, names: Iterable[str],
     """
     Return the Fit of the named parameters of a vehicle to flight records.
 
-    Args: names of vehicle constants, effects or parameters of effects (see free.py); on_progress
-    is called with the share that is done. What the flights leave undetermined is held at the
-    vehicle file's value, and said. Raises InputError, also for what scales thrust over mass where
-    commands were scaled by the weight (thrust_level): it would come out as the file has it; and
-    for effects of the motors where measured rotor speeds take the place of commands.
+    Args: names of vehicle constants, effects or parameters of effects (see free.py), or a single
+    one; on_progress is called with the share that is done. What the flights leave undetermined is
+    held at the vehicle file's value, and said. Raises InputError, also for what scales thrust over
+    mass where commands were scaled by the weight (thrust_level): it would come out as the file has
+    it; and for effects of the motors where measured rotor speeds take the place of commands.
     """
     records = flight_records('records', records)
     vehicle_given(vehicle)

@@ -88,8 +88,8 @@ def nuisances(vehicle: Vehicle, tracks: Sequence[Track]) -> tuple[Nuisance, ...]
                    'gyro_bias') for spread in (0.01, 0.003)]
         kinds += [('attitude_bias', 'tilt of the attitude', 'rad', tilt, (spread,) * 3, RARE, '',
                    (), 'attitude_misalignment') for spread in (0.005, 0.0015)]
-        kinds.append(('heading', 'heading of the attitude beside that of the position', 'rad',
-                      ('attitude_misalignment.heading',), (HEADING,), RARE, '', (),
+        kinds.append(('heading', 'offset of the recorded heading from the axes of the position',
+                      'rad', ('attitude_misalignment.heading',), (HEADING,), RARE, '', (),
                       'attitude_misalignment'))
         # A weak rotor or a centre of mass that is off tilts all flights alike; nothing turns them.
         kinds.append((TRIM, 'moment', 'N m', moment, tuple(trim_wrench(vehicle)[3:]), RARE, '',

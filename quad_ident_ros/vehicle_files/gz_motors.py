@@ -17,7 +17,8 @@ from quad_ident_ros.vehicle_files.xml_tree import Element
 
 _PLUGINS = ('multicopter-motor-model', 'multicoptermotormodel', 'gazebo_motor_model')
 # PX4's plugin of Gazebo Classic takes the axial speed over this, in m/s, from the thrust; its code
-# has the number, no file has. RotorS, from which it came, and gz-sim do not.
+# has the number, no file has. Older versions took the whole speed; RotorS, from which it came, and
+# gz-sim take none.
 _CLASSIC, _NO_THRUST = 'libgazebo_motor_model.so', 25.0
 TURNS = {'cw': 1, 'ccw': -1}
 """Signs of the reaction torque by the direction in which a rotor turns, seen from above."""
@@ -108,7 +109,7 @@ def take_motors(draft: Draft, plugins: Sequence[MotorPlugin], spinning: Sequence
     if classic:
         draft.assumed.append(
             f'thrust falls by the speed along the axis over {_NO_THRUST:g} m/s, up or down, as in '
-            f'the code of {_CLASSIC} of PX4')
+            f'the code of {_CLASSIC} of PX4; older versions took the whole speed')
 
     def effects(vehicle: Vehicle) -> Values:
         rise, fall = values['timeConstantUp'], values['timeConstantDown']
