@@ -24,6 +24,10 @@ FEATURES: dict[str, Callable[[dict], float]] = {
     'contribution': lambda row: size_shown(row['contribution'], row.get('distance') or 0.0),
     'distance': lambda row: float(np.log1p(row.get('distance') or 0.0)),
     'companions': lambda row: float(row.get('companions') or 0.0)}
+# Where an effect is as probable as not: alone, closing all that can be closed, two standard errors
+# from none. Nearly all flights of development have an effect, and a user's need not: their base
+# rate would name what is 1.5 standard errors from none.
+EVEN = {'contribution': size_shown(1.0, 2.0), 'distance': float(np.log1p(2.0))}
 # Effects that act alike: where one is present, a probability of the other is not wrong.
 ALIKE = ({'thrust_scale', 'mass_offset'}, {'actuation_delay', 'motor_lag'})
 RIDGE = 0.01        # on the weights, in units of log likelihood: keeps what a few rows say finite
@@ -93,13 +97,15 @@ def fit(rows: Rows) -> Calibration:
     """
     Return the Calibration by maximum likelihood; raises ValueError where all or none are present.
 
-    Standard errors are those of the inverse Hessian, of rows that are independent.
+    The constant follows from the weights, by EVEN. Standard errors are those of the inverse
+    Hessian, of rows that are independent.
     """
     y = rows.present
     if not len(y) or y.min() == y.max():
         raise ValueError(f'{len(y)} effects, all or none of them present: nothing to fit')
-    x = np.column_stack([np.ones(len(y)), rows.x])
-    ridge = RIDGE * np.array([0.0, *np.ones(rows.x.shape[1])])
+    even = np.array([EVEN.get(name, 0.0) for name in rows.names])
+    x = rows.x - even
+    ridge = RIDGE * np.ones(x.shape[1])
 
     def cost(b: Array) -> tuple[float, Array]:
         z = x @ b
@@ -108,14 +114,16 @@ def fit(rows: Rows) -> Calibration:
 
     b = minimize(cost, np.zeros(x.shape[1]), jac=True, method='BFGS').x
     p = _logistic(x @ b)
-    errors = np.sqrt(np.diag(np.linalg.inv((x.T * (p * (1.0 - p))) @ x + np.diag(ridge))))
-    pairs = [(float(value), float(error)) for value, error in zip(b, errors, strict=True)]
+    covariance = np.linalg.inv((x.T * (p * (1.0 - p))) @ x + np.diag(ridge))
+    pairs = [(float(value), float(error))
+             for value, error in zip(b, np.sqrt(np.diag(covariance)), strict=True)]
+    constant = float(-b @ even), float(np.sqrt(even @ covariance @ even))
     groups = np.array(rows.groups)
     tables = {'all': reliability(p, y)} | {
         name: reliability(p[groups == name], y[groups == name]) for name in dict.fromkeys(groups)}
     base = y.mean()
     return Calibration(
-        pairs[0], dict(zip(rows.names, pairs[1:], strict=True)), tables,
+        constant, dict(zip(rows.names, pairs, strict=True)), tables,
         float(np.mean(-y * np.log(p) - (1.0 - y) * np.log1p(-p))),
         float(-base * np.log(base) - (1.0 - base) * np.log1p(-base)))
 

@@ -11,11 +11,17 @@ from withheld import calibrate
 from withheld.__main__ import main
 
 
-def drawn(weights, constant, count=20000, seed=1):
+def constant_of(weights):
+    """Return the constant with which two standard errors of all that there is are even odds."""
+    return -(weights.get('contribution', 0.0) * np.sqrt(0.75)
+             + weights.get('distance', 0.0) * np.log(3.0))
+
+
+def drawn(weights, count=20000, seed=1):
     """Return Rows whose effects are present as often as the weights say."""
     rng = np.random.default_rng(seed)
     x = rng.normal(size=(count, len(weights)))
-    z = constant + x @ np.array(list(weights.values()))
+    z = constant_of(weights) + x @ np.array(list(weights.values()))
     present = (rng.random(count) < 1.0 / (1.0 + np.exp(-z))).astype(float)
     groups = tuple(np.where(rng.random(count) < 0.5, 'ours', 'faulty').tolist())
     return calibrate.Rows(tuple(weights), x, present, groups)
@@ -25,16 +31,16 @@ def drawn(weights, constant, count=20000, seed=1):
     {'contribution': 2.0, 'distance': 0.3},
     {'contribution': 1.7, 'distance': -0.8, 'companions': 0.1}])
 def test_known_weights_come_out(weights):
-    made = calibrate.fit(drawn(weights, -0.7))
+    made = calibrate.fit(drawn(weights))
     for (value, error), true in zip([made.constant, *made.weights.values()],
-                                    [-0.7, *weights.values()], strict=True):
+                                    [constant_of(weights), *weights.values()], strict=True):
         assert value == pytest.approx(true, abs=4.0 * error) and 0.01 < error < 0.1
     assert list(made.weights) == list(weights)
     assert made.loss < made.loss_of_base_rate
 
 
 def test_probabilities_are_frequencies_in_every_group():
-    made = calibrate.fit(drawn({'distance': 0.5, 'contribution': 1.0}, -1.0))
+    made = calibrate.fit(drawn({'distance': 0.5, 'contribution': 1.0}))
     assert set(made.tables) == {'all', 'ours', 'faulty'}
     for table in made.tables.values():
         for row in table:
