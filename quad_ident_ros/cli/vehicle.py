@@ -11,7 +11,12 @@ import yaml
 from quad_ident_ros import schema
 from quad_ident_ros.effects.registry import titled
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.model.vehicle import load_vehicle, vehicle_to_mapping, write_vehicle
+from quad_ident_ros.model.vehicle import (
+    hover_fault,
+    load_vehicle,
+    vehicle_to_mapping,
+    write_vehicle,
+)
 from quad_ident_ros.report.data import write_json
 from quad_ident_ros.report.screen import console, progress_bar, say, table_of
 from quad_ident_ros.vehicle_files.kinds import KINDS
@@ -82,7 +87,14 @@ def as_data(reading: Reading) -> dict[str, Any]:
     return {'schema': 'quad_ident/vehicle/1', 'file': reading.path, 'kind': reading.kind,
             'vehicle': None if vehicle is None else vehicle_to_mapping(vehicle),
             'read': [asdict(entry) for entry in reading.read],
-            'missing': reading.missing, 'assumed': list(reading.assumed)}
+            'missing': reading.missing, 'assumed': list(reading.assumed),
+            'warnings': _warnings(reading)}
+
+
+def _warnings(reading: Reading) -> list[str]:
+    """Return what a flight of the vehicle would be refused for."""
+    fault = None if reading.vehicle is None else hover_fault(reading.vehicle)
+    return [] if fault is None else ['; '.join(fault)]
 
 
 def show(reading: Reading) -> None:
@@ -107,6 +119,8 @@ def _show_vehicle(reading: Reading, screen: Any) -> None:
             f', {100 * vehicle.hover_speed / vehicle.speed_max:.3g} % of its maximum')
     say(screen, f'vehicle: {vehicle.name}, {vehicle.mass:.6g} kg, {len(vehicle.rotors)} rotors, '
                 f'hovers at {vehicle.hover_speed:.4g} rad/s{most}')
+    for text in _warnings(reading):
+        say(screen, f'warning: {text}')
     for name, values in vehicle.effects.items():
         numbers = ', '.join(f'{key} = {value:.6g}' for key, value in values.items())
         say(screen, f'effect: {titled(name)} {numbers}')

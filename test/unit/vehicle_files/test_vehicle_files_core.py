@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bodies put together, what is missing of a file, and the command `vehicle`."""
 
+from dataclasses import replace
 import json
 import math
 from pathlib import Path
@@ -14,7 +15,7 @@ from refusing import refused
 from quad_ident_ros.cli.main import main, parser
 from quad_ident_ros.effects.registry import mapping, vector
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.model.vehicle import load_vehicle
+from quad_ident_ros.model.vehicle import load_vehicle, write_vehicle
 from quad_ident_ros.vehicle_files.bodies import (
     about,
     Body,
@@ -274,6 +275,19 @@ def test_the_command_shows_and_writes_what_the_file_says(tmp_path, capsys):
     assert {'key': 'mass', 'value': 0.5, 'unit': 'kg', 'place': 'line 4'} in data['read']
     assert main(['vehicle', 'hummingbird', '--json', '-']) == 0
     assert json.loads(capsys.readouterr().out)['vehicle']['name'] == 'hummingbird'
+
+
+def test_the_command_warns_of_a_vehicle_that_cannot_take_off(tmp_path, capsys):
+    path = tmp_path / 'weak.yaml'
+    vehicle = load_vehicle('hummingbird')
+    write_vehicle(path, replace(vehicle, speed_max=0.5 * vehicle.hover_speed))
+    assert main(['vehicle', str(path)]) == 0
+    assert ('warning: hummingbird would hover at' in (said := capsys.readouterr().out)
+            and 'it cannot take off; correct mass (kg)' in ' '.join(said.split()))
+    assert main(['vehicle', str(path), '--json', '-']) == 0
+    assert len(json.loads(capsys.readouterr().out)['warnings']) == 1
+    assert main(['vehicle', 'hummingbird', '--json', '-']) == 0
+    assert json.loads(capsys.readouterr().out)['warnings'] == []
 
 
 def test_the_command_says_what_is_wrong_in_one_line(tmp_path, capsys):
