@@ -19,11 +19,13 @@ from withheld.score import column_of, findings_of, named_in, reliability, TITLES
 
 Array = NDArray[np.float64]
 
-# Of a row of the ranking, as the library takes them (diagnose/probability.py), in its order.
+# Of a row of the ranking, as the library takes them (diagnose/probability.py), in its order; with
+# `behind`: whether another effect contributes more.
 FEATURES: dict[str, Callable[[dict], float]] = {
     'contribution': lambda row: size_shown(row['contribution'], row.get('distance') or 0.0),
     'distance': lambda row: float(np.log1p(row.get('distance') or 0.0)),
-    'companions': lambda row: float(row.get('companions') or 0.0)}
+    'companions': lambda row: float(row.get('companions') or 0.0),
+    'behind': lambda row: row['behind'] * float(np.log1p(row.get('distance') or 0.0))}
 # Where an effect is as probable as not: alone, closing all that can be closed, two standard errors
 # from none. Nearly all flights of development have an effect, and a user's need not: their base
 # rate would name what is 1.5 standard errors from none.
@@ -76,12 +78,15 @@ def rows_of(pairs: Iterable[tuple[dict, dict]], features: dict = FEATURES) -> Ro
             continue
         there = set(label['effects'])
         allowed = set(label.get('beside', ())) | set(label.get('instead', ()))
-        for row in found.get('ranking') or ():
+        ranked = [row for row in found.get('ranking') or ()
+                  if row.get('contribution') is not None]
+        most = max((row['contribution'] for row in ranked), default=0.0)
+        for row in ranked:
             effect = row['effect']
-            if row.get('contribution') is None or (effect not in there and (
-                    effect in allowed or _alike(effect, there, found))):
+            if effect not in there and (effect in allowed or _alike(effect, there, found)):
                 continue
-            x.append([value_of(row) for value_of in features.values()])
+            known = row | {'behind': row['contribution'] < most}
+            x.append([value_of(known) for value_of in features.values()])
             present.append(float(effect in there))
             groups.append(column_of(label))
     return Rows(tuple(features), np.array(x, float).reshape(-1, len(features)),

@@ -12,7 +12,7 @@ from quad_ident_ros.diagnose import gap as gaps
 from quad_ident_ros.diagnose.bench import Bench, Model, tie
 from quad_ident_ros.diagnose.candidates import Candidate
 from quad_ident_ros.diagnose.gap import Noise
-from quad_ident_ros.diagnose.probability import presence, probabilities, Weight, with_companions
+from quad_ident_ros.diagnose.probability import beside_others, presence, probabilities, Weight
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.greybox.errors import ERRORS, GROUPS
@@ -68,7 +68,7 @@ def judge(bench: Bench) -> Judgement:
                    for removed in _subsets(model, rules)}
         alone = {removed[0]: one for removed, one in smaller.items() if len(removed) == 1}
         without |= alone
-        for cause, weight in with_companions(
+        for cause, weight in beside_others(
                 {cause: _weight(model, one, before, noise, bench.distance(model, (cause,)), rules)
                  for cause, one in alone.items()}, rules).items():
             # Beside effects that do not matter it may show more clearly, or less.

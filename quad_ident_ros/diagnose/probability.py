@@ -19,7 +19,7 @@ class Weight:
     see judgement.stability; explained: the share of its contribution that its form explains;
     gap {group: ...}: without it; distance: by how many standard errors its parameters together
     differ from no effect, see bench.standard_errors_from_none; companions: how many other
-    effects clearly contribute beside it.
+    effects clearly contribute beside it; behind: whether another effect contributes more.
     """
 
     contribution: float
@@ -28,11 +28,12 @@ class Weight:
     gap: dict
     distance: float
     companions: int = 0
+    behind: bool = False
 
 
-def with_companions(weights: dict, rules: Rules) -> dict:
+def beside_others(weights: dict, rules: Rules) -> dict:
     """
-    Return {candidate: Weight} of the effects of one model with their companions.
+    Return {candidate: Weight} of the effects of one model, each with what the others contribute.
 
     How likely an effect is before looking at it shows in the number of others present (Scott and
     Berger, Annals of Statistics 38, 2010).
@@ -40,7 +41,8 @@ def with_companions(weights: dict, rules: Rules) -> dict:
     contribution, steadiness = rules.companion
     clear = {cause for cause, one in weights.items()
              if one.contribution >= contribution and one.stability >= steadiness}
-    return {cause: replace(one, companions=len(clear - {cause}))
+    most = max((one.contribution for one in weights.values()), default=0.0)
+    return {cause: replace(one, companions=len(clear - {cause}), behind=one.contribution < most)
             for cause, one in weights.items()}
 
 
@@ -86,11 +88,13 @@ def presence(weight: Weight, rules: Rules, shift: float = 0.0) -> float:
     shift: prior knowledge of the effect, see Rules.shift.
 
     Of standard errors the logarithm counts: ten more tell little where there are thirty, for what
-    formulas are wrong by is not known well.
+    formulas are wrong by is not known well. They tell less of an effect that may stand for what
+    the formula of a greater one is wrong by.
     """
-    base, share, far, beside = rules.calibration
+    base, share, far, beside, behind = rules.calibration
     value = (base + share * size_shown(weight.contribution, weight.distance)
-             + far * np.log1p(weight.distance) + beside * weight.companions + shift)
+             + (far + behind * weight.behind) * np.log1p(weight.distance)
+             + beside * weight.companions + shift)
     return float(1.0 / (1.0 + np.exp(-value)))
 
 

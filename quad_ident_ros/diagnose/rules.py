@@ -64,10 +64,10 @@ class Rules:
       form_time: s over which that error stays the same: that of a turn or a stop of a flight.
     Probability:
       calibration: constant, and weights of the size that the contribution shows, of the logarithm
-        of one plus the standard errors from no effect and of the companions in the log odds of
-        being present, fitted to the flights of development of the withheld check, and a constant
-        by which all that there is, two standard errors from none, is as probable as not:
-        docs/method.md has the command.
+        of one plus the standard errors from no effect, of the companions, and of that logarithm
+        once more beside a greater effect, in the log odds of being present, fitted to the flights
+        of development of the withheld check; the constant is that by which all that there is, two
+        standard errors from none, is as probable as not: docs/method.md has the command.
       companion: contribution and stability (standard errors) from which on another effect clearly
         contributes.
     Gap (see gap.py):
@@ -148,7 +148,7 @@ class Rules:
     half: float = 0.5
     doubt: float = 0.12
     instead: float = 2.0
-    calibration: tuple[float, float, float, float] = (-5.61, 4.94, 1.22, 0.365)
+    calibration: tuple[float, float, float, float, float] = (-5.41, 4.24, 1.58, 0.555, -0.572)
     companion: tuple[float, float] = (0.1, 3.0)
     stand_in: float = 0.5
     tied: float = 0.9

@@ -9,21 +9,21 @@ import numpy as np
 import pytest
 
 from quad_ident_ros.diagnose.probability import (
+    beside_others,
     presence,
     probabilities,
     size_shown,
     told_apart,
     Weight,
-    with_companions,
 )
 from quad_ident_ros.diagnose.rules import RULES
 
 Named = namedtuple('Named', 'effect form')
-RULE = replace(RULES, calibration=(-1.0, 1.5, 2.0, 0.3))
+RULE = replace(RULES, calibration=(-1.0, 1.5, 2.0, 0.3, -0.7))
 
 
-def of(contribution, distance, companions=0, stability=5.0):
-    return Weight(contribution, stability, 0.9, {}, distance, companions)
+def of(contribution, distance, companions=0, stability=5.0, behind=False):
+    return Weight(contribution, stability, 0.9, {}, distance, companions, behind)
 
 
 @pytest.mark.parametrize(('contribution', 'distance', 'companions', 'size'),
@@ -36,6 +36,9 @@ def test_it_is_the_logistic_function_of_a_weighted_sum(contribution, distance, c
     value = -1.0 + 1.5 * size + 2.0 * np.log(1.0 + distance) + 0.3 * companions
     assert presence(of(contribution, distance, companions), RULE) == pytest.approx(
         1.0 / (1.0 + np.exp(-value)))
+    value -= 0.7 * np.log(1.0 + distance)
+    assert presence(of(contribution, distance, companions, behind=True), RULE) == pytest.approx(
+        1.0 / (1.0 + np.exp(-value)))
 
 
 def test_more_of_anything_that_speaks_for_it_makes_it_more_probable():
@@ -43,13 +46,24 @@ def test_more_of_anything_that_speaks_for_it_makes_it_more_probable():
     assert presence(of(0.5, 5.0), RULES) > base
     assert presence(of(0.1, 9.0), RULES) > base
     assert presence(of(0.1, 5.0, 1), RULES) > base
+    assert presence(of(0.1, 5.0, behind=True), RULES) < base
+
+
+def test_all_that_there_is_at_two_standard_errors_is_as_probable_as_not():
+    assert presence(of(1.0, 2.0), RULES) == pytest.approx(0.5, abs=0.005)
 
 
 def test_companions_are_the_others_that_clearly_contribute():
     weights = {'a': of(0.5, 0.9), 'b': of(0.3, 0.9), 'c': of(0.3, 0.9, stability=2.0),
                'd': of(0.05, 0.9)}
-    found = with_companions(weights, RULES)
+    found = beside_others(weights, RULES)
     assert [found[name].companions for name in 'abcd'] == [1, 1, 2, 2]
+
+
+def test_all_but_the_greatest_are_behind_another():
+    found = beside_others({'a': of(0.3, 9.0), 'b': of(0.5, 2.0), 'c': of(0.1, 5.0)}, RULES)
+    assert [found[name].behind for name in 'abc'] == [True, False, True]
+    assert not beside_others({'a': of(0.3, 9.0)}, RULES)['a'].behind
 
 
 @pytest.mark.parametrize('contribution', [-1.0, 0.0, 1e6])
