@@ -8,8 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from quad_ident_ros.diagnose.accelerometer import residual_force
-from quad_ident_ros.effects import wind_gradient
-from quad_ident_ros.effects.registry import PLACES, SLICES
+from quad_ident_ros.effects.registry import SLICES
 from quad_ident_ros.greybox.errors import ERRORS
 from quad_ident_ros.greybox.estimate import weights_of
 from quad_ident_ros.greybox.flights import Flight, flight_of, inertial, Track
@@ -192,10 +191,7 @@ def band(flights: Sequence[ResidualWrench], channel: str) -> tuple[float, float]
 def _features(flight: Flight, middle: np.ndarray, vehicle: Vehicle, z: np.ndarray) -> dict:
     states = flight.states[middle]
     rotation = rotation_matrix(states[:, 6:10])
-    parameters = z[SPLIT:]
-    by_place = parameters[PLACES['wind', 'gradient']]
-    wind = (parameters[SLICES['wind']] + by_place[:3]
-            + states[:, :3] @ wind_gradient.gradient_of(by_place).T)
+    wind = z[SPLIT + SLICES['wind'].start:SPLIT + SLICES['wind'].stop]
     air = np.einsum('bji,bj->bi', rotation, states[:, 3:6] - wind)
     rates = states[:, 10:13]
     course = flight.course

@@ -241,5 +241,5 @@ def _both(first: Hook, second: Hook) -> Hook:
     return act
 
 
-BEFORE = ('body',)      # hooks that act before the flight, and know nothing of the rotors
+BEFORE = ('body', 'air')    # hooks that act before the flight, and know nothing of the rotors
 BODY, AIR, THRUST, WRENCH = (_chain(hook) for hook in ('body', 'air', 'thrust', 'wrench'))

@@ -3,7 +3,6 @@
 """Steady wind."""
 
 from quad_ident_ros.compiled import compiled
-from quad_ident_ros.effects import wind_gradient
 from quad_ident_ros.effects.base import Effect, Form, Parameter, Table
 from quad_ident_ros.model.situation import WIND_X, WIND_Y, WIND_Z
 
@@ -13,16 +12,16 @@ some centimetres per second (Kaimal and Finnigan, Atmospheric Boundary Layer Flo
 
 
 @compiled(fused=True, inlined=True)
-def air(p: Table, k: int, s: Table, _: Table) -> None:
-    """Add the wind."""
+def air(p: Table, k: int, s: Table) -> None:
+    """Set the wind."""
     for i in range(s.shape[1]):
-        s[WIND_X, i] += p[k, i]
-        s[WIND_Y, i] += p[k + 1, i]
-        s[WIND_Z, i] += p[k + 2, i]
+        s[WIND_X, i] = p[k, i]
+        s[WIND_Y, i] = p[k + 1, i]
+        s[WIND_Z, i] = p[k + 2, i]
 
 
 FORM = Form(
-    name='steady', title='the same everywhere',
+    name='steady', title='steady wind',
     parameters=tuple(Parameter(axis, 'm/s', -20.0, 20.0, size,
                                f'velocity of the air along world {axis}')
                      for axis, size in SIZES.items()),
@@ -30,7 +29,7 @@ FORM = Form(
     acts_on='translation', on_rotors=False,
     air=air, needs_reference=True)
 EFFECT = Effect(
-    name='wind', title='steady wind', forms=(FORM, wind_gradient.FORM),
+    name='wind', title='steady wind', forms=(FORM,),
     excitation='flight in several directions or headings; it acts through drag, known or found',
     confused_with=('attitude_misalignment', 'rotor_drag', 'body_drag'),
     per_flight=(1.0, 1.0, 0.0), needs_air=True)

@@ -138,9 +138,11 @@ def prepare(v: np.ndarray, places: np.ndarray, theta: np.ndarray, s: np.ndarray,
         s[IXY, i], s[IXZ, i], s[IYZ, i] = v[16, i], v[17, i], v[18, i]
         s[COM_X, i] = s[COM_Y, i] = s[COM_Z, i] = 0.0
         s[RADIUS, i], s[PER_HOVER, i] = v[7, i], 1.0 / v[15, i]
+        s[WIND_X, i] = s[WIND_Y, i] = s[WIND_Z, i] = 0.0
         s[ARMS_X, i] = s[ARMS_Y, i] = s[TORQUE, i] = 1.0
     mark(theta, s)
     BODY(theta, s)
+    AIR(theta, s)
     for i in range(s.shape[1]):
         s[PER_MASS, i] = 1.0 / s[MASS, i]
         s[PER_IX, i], s[PER_IY, i], s[PER_IZ, i] = 1.0 / s[IX, i], 1.0 / s[IY, i], 1.0 / s[IZ, i]
@@ -190,7 +192,7 @@ def _turn_with_products(s: np.ndarray, dx: np.ndarray) -> None:
 
 
 @compiled(fused=True, inlined=True)
-def _place(x: np.ndarray, theta: np.ndarray, s: np.ndarray, rotors: np.ndarray) -> None:
+def _place(x: np.ndarray, s: np.ndarray) -> None:
     """
     Write position, velocity, rotation, rates and air velocity of the states x (13, LANES).
 
@@ -224,8 +226,6 @@ def _place(x: np.ndarray, theta: np.ndarray, s: np.ndarray, rotors: np.ndarray) 
         s[R21, i] = two * (b * c + w * a)
         s[R22, i] = 1.0 - two * (a * a + b * b)
         s[WX, i], s[WY, i], s[WZ, i] = x[10, i], x[11, i], x[12, i]
-        s[WIND_X, i] = s[WIND_Y, i] = s[WIND_Z, i] = 0.0
-    AIR(theta, s, rotors)
     for i in range(s.shape[1]):
         dx, dy = s[VX, i] - s[WIND_X, i], s[VY, i] - s[WIND_Y, i]
         dz = s[VZ, i] - s[WIND_Z, i]
@@ -283,7 +283,7 @@ def derivative(x: np.ndarray, u: np.ndarray, v: np.ndarray, places: np.ndarray,
     Newton-Euler with a quaternion and the body rate, so that there is no singular attitude.
     u (INPUT, LANES) what acts besides the rotors, with smoothed commands for a residual function.
     """
-    _place(x, theta, s, rotors)
+    _place(x, s)
     for i in range(s.shape[1]):
         s[FX, i] = s[FY, i] = s[FZ, i] = 0.0
         if v[14, i] == 0.0:

@@ -8,9 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from textwrap import indent
 
-import numpy as np
-
-from quad_ident_ros.effects import ground_effect_curve, wind_gradient
+from quad_ident_ros.effects import ground_effect_curve
 from quad_ident_ros.effects.thrust_scale_curve import SPEED_OF
 from quad_ident_ros.model.vehicle import Vehicle
 from quad_ident_ros.vehicle_files.edits import shown
@@ -90,8 +88,7 @@ import numpy as np
 SITES = {sites}
 ACTUATORS = np.array({actuators})
 LIFT = np.array({lifts})    # N, thrust of each rotor at its speed at hover
-WIND = np.array({wind})    # m/s, velocity of the air at the origin, world axes
-BY_PLACE = np.array({by_place})    # 1/s, how it changes along world x, y and z
+WIND = np.array({wind})    # m/s, velocity of the air, world axes
 
 
 def install(model):
@@ -126,8 +123,7 @@ def forces(model, data):
     spin = np.zeros(6)    # rate and velocity of the body's origin, world axes
     mujoco.mj_objectVelocity(model, data, mujoco.mjtObj.mjOBJ_XBODY, body, spin, 0)
     rate = axes.T @ spin[:3]
-    wind = WIND + BY_PLACE @ centre
-    air = axes.T @ (spin[3:] + np.cross(spin[:3], centre - data.xpos[body]) - wind)
+    air = axes.T @ (spin[3:] + np.cross(spin[:3], centre - data.xpos[body]) - WIND)
     arms, height = (data.site_xpos[sites] - centre) @ axes, data.site_xpos[sites, 2]
     u = air + np.cross(rate, arms)
     lift = thrusts(model, data)
@@ -208,9 +204,8 @@ def code(vehicle: Vehicle, wanted: Wanted, rotors: Rotors, model: str, lag: str)
              if any(drag)]
     forms = [key for key in LINES if key in acting]
     lines += [LINES[key](acting[key], count, radius) for key in forms]
-    winds = [key for key in acting if key[0] == 'wind']
-    if lines:
-        forms += winds
+    if ('wind', 'steady') in acting and lines:
+        forms.append(('wind', 'steady'))
     delay = acting.get(('actuation_delay', 'pure_delay'), {}).get('delay', 0.0)
     if delay:
         forms.append(('actuation_delay', 'pure_delay'))
@@ -227,7 +222,6 @@ def code(vehicle: Vehicle, wanted: Wanted, rotors: Rotors, model: str, lag: str)
         given_said='and gives its commands by Commands().command.\n' if delay or lag else '',
         sites=list(rotors.sites), actuators=list(rotors.actuators),
         lifts=f'[{", ".join(map(_one, lifts))}]', wind=f'[{", ".join(map(_one, wanted.wind))}]',
-        by_place=_by_place(acting.get(('wind', 'gradient'), {})),
         lines=indent('\n'.join(lines), '    '))
     if lag:
         text += LAG.format(rise=_one(wanted.rise), fall=_one(wanted.fall))
@@ -235,13 +229,6 @@ def code(vehicle: Vehicle, wanted: Wanted, rotors: Rotors, model: str, lag: str)
         text += COMMANDS.format(
             delay=_one(delay), given='lagging(model, data, mean)' if lag else 'mean')
     return Code(text, tuple(forms), constants)
-
-
-def _by_place(values: Values) -> str:
-    """Return how a wind changes with the place, as a list of rows."""
-    parameters = [values.get(each.name, 0.0) for each in wind_gradient.FORM.parameters]
-    rows = wind_gradient.gradient_of(np.array(parameters))
-    return f'[{", ".join("[" + ", ".join(map(_one, row)) + "]" for row in rows)}]'
 
 
 def _one(value: float) -> str:

@@ -104,8 +104,7 @@ def wanted_of(vehicle: Vehicle, sag: float | None, holds: Collection[Key]) -> Wa
         inflow=(inflow.get('axial', 0.0) / speeds,
                 inflow.get('translational', 0.0) / len(vehicle.rotors)),
         flapping=(flaps.get('coefficient', 0.0) + flaps.get('hub_coefficient', 0.0)) / speeds,
-        wind=np.array([wind.get(axis, 0.0) + wind.get(f'at_origin_{axis}', 0.0)
-                       for axis in 'xyz']),
+        wind=np.array([wind.get(axis, 0.0) for axis in 'xyz']),
         sources=_sources(vehicle, sag, holds))
 
 

@@ -43,7 +43,6 @@ WAYS: dict[tuple[str, str], tuple[Way, ...]] = {
     ('body_drag', 'planar'): (_BODY_DRAG,),
     ('body_drag', 'axes'): (_BODY_DRAG,),
     ('wind', 'steady'): (Way(('wind',)),),
-    ('wind', 'gradient'): (Way(('wind',), 'the wind at the origin, the same everywhere'),),
     ('inflow', 'linear'): (Way(('inflow',)),),
     ('blade_flapping', 'hub_moment'): (Way(('flapping',)),),
     ('blade_flapping', 'damped_hub'): (Way(('flapping',), 'its moment with the velocity; the '

@@ -9,7 +9,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 import numpy as np
 import pytest
-from scipy.linalg import expm
 
 from quad_ident_ros.model.attitude import rotation_matrix
 
@@ -36,26 +35,6 @@ def test_a_hovering_vehicle_takes_up_the_wind(linear, quadratic):
     else:
         exact = wind / (1 + quadratic * wind * course.t / MASS)
     assert np.abs(found - exact).max() < 1e-8
-
-
-def test_a_vehicle_of_linear_drag_drifts_in_an_even_gradient_of_the_wind():
-    # p' = v, v' = -c / m (v - w - G p): linear, its solution an exponential of a matrix.
-    drag = (0.3, 0.4, 0.5)
-    vehicle = replace(BARE, linear_drag=drag)
-    effects = {'wind': {'at_origin_x': 2.0, 'at_origin_y': -1.0, 'at_origin_z': 0.2,
-                        'x_by_x': 0.4, 'x_by_y': 0.3, 'x_by_z': -0.6, 'y_by_x': -0.2,
-                        'y_by_y': 0.3, 'y_by_z': 0.7}}
-    # Air does not pile up: what widens along x and y sinks.
-    gradient = np.array([[0.4, 0.3, -0.6], [-0.2, 0.3, 0.7], [0.0, 0.0, -0.7]])
-    course = held(vehicle, HOVER, seconds=2.0)
-    start = state(position=(1.0, -2.0, 3.0), velocity=(1.0, 0.5, -0.5))
-    found = roll(vehicle, effects, course, start)
-    answer = np.diag(drag) / MASS
-    law = np.block([[np.zeros((3, 3)), np.eye(3), np.zeros((3, 1))],
-                    [answer @ gradient, -answer, answer @ [[2.0], [-1.0], [0.2]]],
-                    [np.zeros((1, 7))]])
-    exact = [expm(law * t) @ [*start[:6], 1.0] for t in course.t]
-    assert np.abs(found[:, :6] - np.array(exact)[:, :6]).max() < 1e-7
 
 
 def test_the_velocity_at_the_end_is_that_at_which_the_forces_balance():

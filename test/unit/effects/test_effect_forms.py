@@ -49,8 +49,6 @@ OTHERS = {
                                                 'block_yaw': 0.1},
     ('attitude_misalignment', 'gyro'): {'gyro_roll': 0.03, 'gyro_pitch': -0.02, 'gyro_yaw': 0.1},
     ('attitude_misalignment', 'heading'): {'heading': 0.1},
-    ('wind', 'gradient'): {'at_origin_x': 2.0, 'at_origin_y': -1.0, 'x_by_y': 0.5, 'x_by_z': 0.8,
-                           'y_by_x': -0.3, 'y_by_y': 0.6},
     ('thrust_scale', 'offset'): {'at_hover': 1.02, 'offset': 0.2},
     ('thrust_scale', 'exponent'): {'hover_factor': 1.02, 'exponent': 1.7},
     ('thrust_scale', 'curve'): {'at_70': 0.9, 'at_85': 1.05, 'at_115': 1.1, 'at_130': 0.95},
