@@ -16,6 +16,7 @@ from std_msgs.msg import Float64MultiArray, String
 
 from quad_ident_ros.data.recording import make_next
 from quad_ident_ros.data.table import record_from_table
+from quad_ident_ros.data.topics import FLIGHT_TOPICS, JOINED_TOPIC
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.experiment import load_experiment
 from quad_ident_ros.identify.identify import collect, Settings
@@ -123,7 +124,9 @@ class Watcher:
             (String, self._topic, self._on_result, latched()))]
         node.create_subscription(DiagnosticArray, '/diagnostics', self._on_status, 10)
         node.create_subscription(Log, '/rosout', self._on_log, 10)
-        self._topics = [one.topic_name for one in heard]
+        # The recorder and the simulator hear these.
+        self._topics = [one.topic_name for one in heard] + [
+            node.resolve_topic_name(name) for name in (*FLIGHT_TOPICS, JOINED_TOPIC)]
 
     def refuse_others(self, node):
         """Raise InputError where others publish what only the nodes of this run should."""

@@ -121,6 +121,11 @@ def planned(nodes: Sequence[str], arguments: Sequence[Argument], values: Mapping
                            *words_for(given[node]), *clock), respawn) for node in started]
 
 
+def within(around: str, inner: str) -> str:
+    """Return the namespace of nodes where `launch` has one around theirs, as it joins them."""
+    return inner if not around or inner.startswith('/') else f'{around.rstrip("/")}/{inner}'
+
+
 def was_killed(code: int) -> bool:
     """Return whether a node with this exit code was killed or crashed, and did not end itself."""
     return code < 0 and -code not in TOLD

@@ -7,7 +7,7 @@ from launch.actions import DeclareLaunchArgument, OpaqueFunction, Shutdown
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 
-from quad_ident_ros.nodes.launch_plan import planned, was_killed
+from quad_ident_ros.nodes.launch_plan import NAMESPACE, planned, was_killed, within
 
 # s until a killed node starts again. In this time a launch that ends keeps it from starting.
 RESPAWN_DELAY = 2.0
@@ -23,8 +23,11 @@ def describe(nodes, arguments, usual):
     def start(context):
         values = {argument.name: LaunchConfiguration(argument.name).perform(context)
                   for argument in arguments}
+        around = context.launch_configurations.get('ros_namespace', '')    # of PushRosNamespace
+        inner = values[NAMESPACE.name]
+        values[NAMESPACE.name] = within(around, inner)
         return [Node(package='quad_ident_ros', executable=plan.node, name=plan.node,
-                     namespace=values['namespace'], output='screen',
+                     namespace=inner, output='screen',
                      ros_arguments=list(plan.words), respawn=plan.respawn,
                      respawn_delay=RESPAWN_DELAY, on_exit=_on_exit(plan))
                 for plan in planned(nodes, arguments, values, usual)]

@@ -10,6 +10,7 @@ import subprocess
 import sys
 import time
 
+from geometry_msgs.msg import PoseStamped
 from graph import Graph
 import numpy as np
 import pytest
@@ -118,15 +119,23 @@ def _domain_of(pid):
     return None
 
 
-def test_what_others_publish_on_its_domain_ends_the_demo_at_once(tmp_path):
-    """A foreign recorder made it hang for ten minutes: its news were taken for the run's."""
+@pytest.mark.parametrize('others', ['recorder', 'vehicle'])
+def test_what_others_publish_on_its_domain_ends_the_demo_at_once(tmp_path, others):
+    """
+    A foreign recorder made it hang for ten minutes: its news were taken for the run's.
+
+    The recorder of the demo took the poses of a foreign vehicle, dropped its own, and said OK.
+    """
     demo = subprocess.Popen([sys.executable, '-m', 'quad_ident_ros', 'demo', '-o', str(tmp_path),
                              '--real-time-factor', '0.01'], stderr=subprocess.PIPE, text=True)
     try:
         _await(lambda: (tmp_path / 'run_1/recording_1/flight_1.csv').exists(), 'the flight')
         graph = Graph(_domain_of(demo.pid))
         try:
-            graph.start(Recorder)
+            if others == 'recorder':
+                graph.start(Recorder)
+            else:
+                graph.advertise(PoseStamped, 'pose', 10)
             _, errors = demo.communicate(timeout=30)
         finally:
             graph.close()

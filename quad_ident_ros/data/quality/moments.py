@@ -6,7 +6,7 @@ import numpy as np
 
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.series import correlation, Grid
-from quad_ident_ros.data.record import FlightRecord, MOMENTS
+from quad_ident_ros.data.record import ARM, FlightRecord, MOMENTS
 from quad_ident_ros.model.vehicle import Vehicle
 
 FORCES = 'moments_as_forces'
@@ -27,7 +27,7 @@ def are_forces(record: FlightRecord, vehicle: Vehicle) -> bool:
 
 
 def unit(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
-    """Find moments that are forces at the arm, and U2 and U3 that are moments."""
+    """Find moments that are forces at the arm, U2 and U3 that are moments, or come from forces."""
     if record.info.get(FORCES):
         return [Finding(
             'input_unit', 'warning', 'input',
@@ -38,10 +38,17 @@ def unit(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
         return []
     arm = vehicle.arm_length
     factor = _factor(record, vehicle, ('u2', 'u3'))
+    severity = 'warning' if record.has('cmd1') else 'error'
+    if factor is not None and ARM in record.info and _near(factor, arm * arm):
+        return [Finding(
+            'input_unit', severity, 'u2, u3',
+            f'they turn {vehicle.name} as forces would that were divided by its arms of '
+            f'{arm:.3g} m once more: the torque that they come from was a force (N)',
+            'publish the torque of the WrenchStamped in N m')]
     if factor is None or not _near(factor, 1.0):
         return []
     return [Finding(
-        'input_unit', 'warning' if record.has('cmd1') else 'error', 'u2, u3',
+        'input_unit', severity, 'u2, u3',
         f'they turn {vehicle.name} as moments in N m would, not as forces at its arms of '
         f'{arm:.3g} m',
         'name the columns moment_x and moment_y, or divide them by the arm length')]

@@ -10,7 +10,7 @@ from quad_ident_ros.data.export import save
 from quad_ident_ros.data.load import load
 from quad_ident_ros.data.quality import findings
 from quad_ident_ros.data.record import FlightRecord, MOMENTS
-from quad_ident_ros.data.topics import FLIGHT_TOPICS, raw_columns, record_columns
+from quad_ident_ros.data.topics import ARM, FLIGHT_TOPICS, raw_columns, record_columns
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.experiment import fly, load_experiment
 from quad_ident_ros.identify.signals import NO_ARM, signals
@@ -83,6 +83,17 @@ def test_forces_that_are_moments_are_an_error():
                                     for name in ('u2', 'u3')}}
     found = findings(FlightRecord(record.t, columns, {}), vehicle)
     assert [one.severity for one in found if one.code == 'input_unit'] == ['error']
+
+
+@pytest.mark.parametrize(('name', 'vehicle'), FLOWN)
+def test_forces_in_the_torque_of_a_run_that_says_its_arm_are_an_error(name, vehicle):
+    """The moments of inertia were five times as large, and nothing said why."""
+    record, vehicle = flight(name, vehicle)
+    columns = {**record.columns, **{key: record.columns[key] / vehicle.arm_length
+                                    for key in ('u2', 'u3')}}
+    found = findings(FlightRecord(record.t, columns, {ARM: vehicle.arm_length}), vehicle)
+    assert [one.severity for one in found if one.code == 'input_unit'] == ['error']
+    assert 'input_unit' not in {one.code for one in findings(record, vehicle)}
 
 
 def test_without_an_arm_altitude_and_yaw_are_identified_and_the_rest_is_said():

@@ -80,14 +80,16 @@ def described(monkeypatch):
         monkeypatch.setitem(sys.modules, name, module)
     monkeypatch.delitem(sys.modules, 'quad_ident_ros.nodes.launching', raising=False)
 
-    def describe(file, **given):
+    def describe(file, around=None, **given):
         spec = spec_from_file_location(file, FOLDER / f'{file}.launch.py')
         module = module_from_spec(spec)
         spec.loader.exec_module(module)
         *arguments, start = module.generate_launch_description().entities
         defaults = {argument.name: argument.default_value for argument in arguments}
         assert set(given) <= set(defaults) and all(one.description for one in arguments)
-        return defaults, start.function(SimpleNamespace(launch_configurations=defaults | given))
+        pushed = {'ros_namespace': around} if around else {}
+        return defaults, start.function(SimpleNamespace(
+            launch_configurations=defaults | given | pushed))
 
     yield describe
     sys.modules.pop('quad_ident_ros.nodes.launching', None)
@@ -122,3 +124,21 @@ def test_arguments_that_are_given_arrive_at_their_nodes(described):
     assert 'effects:=["wind:x=3"]' in words['simulator'] and 'seed:=7' in words['simulator']
     assert words['recorder'] == ['-p', 'window_seconds:=4.0']
     assert 'trim:=[6.4, 0.0, 0.0, 0.0]' in words['identifier']
+
+
+@pytest.mark.parametrize(('around', 'namespace', 'prefix'), [
+    ('/fleet', '', 'fleet/'), ('/fleet', 'uav1', 'fleet/uav1/'), ('/fleet', '/uav1', 'uav1/'),
+    ('/', 'uav1', 'uav1/'), (None, 'uav1', 'uav1/'), (None, '', '')])
+def test_a_launch_file_that_is_included_has_the_namespace_around_it(
+        described, tmp_path, around, namespace, prefix):
+    """PushRosNamespace: two vehicles published one /clock, and their files were for nobody."""
+    file = tmp_path / 'some.yaml'
+    file.write_text(f'/{prefix}recorder:\n  ros__parameters:\n    overlap: 0.2\n')
+    _, nodes = described('identify', around=around, namespace=namespace, use_sim_time='true',
+                         params_file=str(file))
+    for node in nodes:
+        assert node.namespace == namespace      # launch_ros joins them once more
+        assert (node.ros_arguments[-2:] == ['-r', '/clock:=clock']) is bool(prefix)
+    words = {node.name: node.ros_arguments for node in nodes}
+    assert str(file) in words['recorder'] and str(file) not in words['identifier']
+    assert (f'frame_prefix:="{prefix}"' in words['simulator']) is bool(prefix)
