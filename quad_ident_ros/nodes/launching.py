@@ -7,7 +7,7 @@ from launch.actions import DeclareLaunchArgument, OpaqueFunction, Shutdown
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 
-from quad_ident_ros.nodes.launch_plan import planned, was_killed
+from quad_ident_ros.nodes.launch_plan import NAMESPACE, planned, was_killed
 
 # s until a killed node starts again. In this time a launch that ends keeps it from starting.
 RESPAWN_DELAY = 2.0
@@ -23,11 +23,16 @@ def describe(nodes, arguments, usual):
     def start(context):
         values = {argument.name: LaunchConfiguration(argument.name).perform(context)
                   for argument in arguments}
+        # That of a group around this file (PushRosNamespace), which launch_ros puts before ours.
+        group = context.launch_configurations.get('ros_namespace', '')
+        space = values[NAMESPACE.name]
+        whole = space if space.startswith('/') else f'{group}/{space}'
+        plans = planned(nodes, arguments, {**values, NAMESPACE.name: whole}, usual)
         return [Node(package='quad_ident_ros', executable=plan.node, name=plan.node,
-                     namespace=values['namespace'], output='screen',
+                     namespace=space, output='screen',
                      ros_arguments=list(plan.words), respawn=plan.respawn,
                      respawn_delay=RESPAWN_DELAY, on_exit=_on_exit(plan))
-                for plan in planned(nodes, arguments, values, usual)]
+                for plan in plans]
 
     return LaunchDescription([
         *(DeclareLaunchArgument(argument.name, default_value=argument.default,

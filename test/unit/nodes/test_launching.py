@@ -86,7 +86,8 @@ def described(monkeypatch):
         spec.loader.exec_module(module)
         *arguments, start = module.generate_launch_description().entities
         defaults = {argument.name: argument.default_value for argument in arguments}
-        assert set(given) <= set(defaults) and all(one.description for one in arguments)
+        assert set(given) <= {*defaults, 'ros_namespace'}
+        assert all(one.description for one in arguments)
         return defaults, start.function(SimpleNamespace(launch_configurations=defaults | given))
 
     yield describe
@@ -122,3 +123,19 @@ def test_arguments_that_are_given_arrive_at_their_nodes(described):
     assert 'effects:=["wind:x=3"]' in words['simulator'] and 'seed:=7' in words['simulator']
     assert words['recorder'] == ['-p', 'window_seconds:=4.0']
     assert 'trim:=[6.4, 0.0, 0.0, 0.0]' in words['identifier']
+
+
+@pytest.mark.parametrize(('namespace', 'whole', 'prefix'), [
+    ('', '/fleet/uav1', 'fleet/uav1/'), ('left', '/fleet/uav1/left', 'fleet/uav1/left/'),
+    ('/uav2', '/uav2', 'uav2/')])
+def test_the_namespace_of_a_group_counts(described, tmp_path, namespace, whole, prefix):
+    """PushRosNamespace keeps it in ros_namespace, and launch_ros puts it before that of a node."""
+    file = tmp_path / 'some.yaml'
+    file.write_text(f'{whole}/recorder:\n  ros__parameters:\n    overlap: 0.5\n')
+    _, nodes = described('identify', ros_namespace='/fleet/uav1', namespace=namespace,
+                         use_sim_time='true', params_file=str(file))
+    assert {node.namespace for node in nodes} == {namespace}
+    words = {node.name: node.ros_arguments for node in nodes}
+    assert words['recorder'][:2] == ['--params-file', str(file)]
+    assert f'frame_prefix:="{prefix}"' in words['simulator']
+    assert all('/clock:=clock' in each for each in words.values())
