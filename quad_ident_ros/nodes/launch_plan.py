@@ -10,7 +10,13 @@ import yaml
 
 from quad_ident_ros import resources, schema
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.nodes.parameter_files import given_to, is_for, names_in, words_for
+from quad_ident_ros.nodes.parameter_files import (
+    given_to,
+    is_for,
+    names_in,
+    overruling,
+    words_for,
+)
 
 SIMULATOR = 'simulator'
 # Signals by which a node ends that was told to; the last where FastDDS holds it, see process.run.
@@ -110,15 +116,27 @@ def planned(nodes: Sequence[str], arguments: Sequence[Argument], values: Mapping
     space = values.get(NAMESPACE.name, '').strip('/')
     if space and simulate:
         given[SIMULATOR]['frame_prefix'] = f'{space}/'
+    data = resources.read_yaml(path) if path else {}
+    names = {node: f'/{space}/{node}' if space else f'/{node}' for node in started}
+    filed = {node: given_to(data, node, name) for node, name in names.items()}
     # Two simulators, each in its namespace, have two times.
-    clocked = sim_time or bool(path) and given_to(
-        resources.read_yaml(path), SIMULATOR, f'/{space}/{SIMULATOR}').get('publish_clock') is True
+    clocked = sim_time or filed.get(SIMULATOR, {}).get('publish_clock') is True
     clock = ('-r', '/clock:=clock') if clocked and simulate and space else ()
     usual = usual if simulate else {}
     # A flight that is simulated ends with its simulator: a new one flies from the beginning.
     respawn = _value(RESPAWN, values) if values.get(RESPAWN.name, '') else not simulate
-    return [Planned(node, (*words_for(usual.get(node, {})), *_file(path, node, values, started),
-                           *words_for(given[node]), *clock), respawn) for node in started]
+    plans = []
+    for node in started:
+        if key := overruling(data, node, names[node], given[node]):
+            raise InputError(f'launch argument params_file: {path}: what {key} sets would '
+                             'overrule the launch arguments, for /** stands before it; move /** '
+                             'to the end of the file')
+        # Behind the file, for there -p has the say: before it, it would not.
+        words = {name: value for name, value in usual.get(node, {}).items()
+                 if name not in filed[node]} | given[node]
+        plans.append(Planned(node, (*_file(path, data, node, names), *words_for(words), *clock),
+                             respawn))
+    return plans
 
 
 def within(around: str, inner: str) -> str:
@@ -131,16 +149,15 @@ def was_killed(code: int) -> bool:
     return code < 0 and -code not in TOLD
 
 
-def _file(path: str, node: str, values: Mapping[str, str], started: Sequence[str]) -> tuple:
+def _file(path: str, data: Mapping[str, object], node: str, names: Mapping[str, str]) -> tuple:
     """Return the ROS arguments for a parameter file where it has something for a node."""
     if not path:
         return ()
-    keys = names_in(resources.read_yaml(path))
-    space = '/' + values.get(NAMESPACE.name, '').strip('/')
-    if not any(is_for(keys, one, f'{space.rstrip("/")}/{one}') for one in started):
+    keys = names_in(data)
+    if not any(is_for(keys, one, name) for one, name in names.items()):
         raise InputError(f'launch argument params_file: nothing in {path} is for '
-                         f'{", ".join(started)}; it is for {", ".join(keys) or "none"}')
-    return ('--params-file', path) if is_for(keys, node, f'{space.rstrip("/")}/{node}') else ()
+                         f'{", ".join(names)}; it is for {", ".join(keys) or "none"}')
+    return ('--params-file', path) if is_for(keys, node, names[node]) else ()
 
 
 def _value(argument: Argument, values: Mapping[str, str]) -> object:

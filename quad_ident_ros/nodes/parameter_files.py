@@ -4,6 +4,8 @@
 
 import json
 
+EVERYBODY = '/**'    # the name of all nodes, for which -p without a name is
+
 
 def names_in(data):
     """Return the names of nodes, which may have wild cards, in the data of a parameter file."""
@@ -22,6 +24,23 @@ def given_to(data, name, full_name):
         if _matches(key, name, full_name) and isinstance(parameters, dict):
             given |= parameters
     return given
+
+
+def overruling(data, name, full_name, given):
+    """
+    Return the name in a parameter file whose values have the say over -p of given ones, or ''.
+
+    ROS 2 keeps values by the name that they are for, in the order in which the names come first;
+    later ones count. The name of -p is /**.
+    """
+    behind = False
+    for key, parameters in _entries(data, ''):
+        if key == EVERYBODY:
+            behind = True
+        elif behind and _matches(key, name, full_name) and isinstance(parameters, dict) \
+                and not given.keys().isdisjoint(parameters):
+            return key
+    return ''
 
 
 def words_for(parameters):

@@ -60,16 +60,23 @@ def test_a_parameter_file_has_the_say_over_usual_values_and_arguments_over_it(
   ros__parameters:
     window_samples: 30
     overlap: 0.2
+/uav1/diagnoser:
+  ros__parameters:
+    vehicle: iris
+    mode: continuous
 """)
     statistics = graph.listen(String, 'uav1/run', latched(32))
     plan = Tables('diagnose').plan(namespace='uav1', params_file=str(file), overlap='0.0',
-                                   real_time_factor='0.0', seed='3')
+                                   real_time_factor='0.0', seed='3', vehicle='crazyflie')
     nodes = start(processes, plan, 'uav1')
     assert graph.trigger('uav1/simulator/start').message == 'short: 1 runs to fly'
     graph.spin_until(lambda: statistics, 'the flight', 60.0)
     assert statistics.data()[0]['info']['seed'] == 3
     said = 'ready: diagnosing what comes on /uav1/record'
     graph.spin_until(lambda: said in nodes[2].errors(), 'the diagnoser', 90.0)
+    assert parameters(graph, 'simulator', 'real_time_factor', 'autostart') == [0.0, False]
+    assert parameters(graph, 'recorder', 'window_samples', 'overlap') == [30, 0.0]
+    assert parameters(graph, 'diagnoser', 'vehicle', 'mode') == ['crazyflie', 'continuous']
     assert [node.stop() for node in nodes] == [0, 0, 0], [node.errors() for node in nodes]
 
 

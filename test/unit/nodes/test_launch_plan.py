@@ -103,3 +103,32 @@ def test_a_parameter_file_goes_to_those_whom_it_names(tmp_path):
     with pytest.raises(InputError, match='nothing in .* is for simulator, recorder, diagnoser'):
         tables.plan(params_file=str(path), namespace='uav1')
     assert '--params-file' in tables.plan(params_file=str(path), namespace='/uav2/')['recorder']
+
+
+def test_arguments_stand_behind_a_parameter_file_and_nothing_before_it(tmp_path):
+    """ROS 2 keeps the words of -p where the first of them stands: before the file, they lose."""
+    path = tmp_path / 'some.yaml'
+    path.write_text('/**/diagnoser:\n  ros__parameters:\n    vehicle: iris\n')
+    tables, file = Tables('diagnose'), ['--params-file', str(path)]
+    assert tables.plan(params_file=str(path))['diagnoser'] == file
+    plan = tables.plan(params_file=str(path), vehicle='quad.yaml', mode='once')
+    assert plan['diagnoser'] == [*file, '-p', 'vehicle:="quad.yaml"', '-p', 'mode:="once"']
+    path.write_text('/**/diagnoser:\n  ros__parameters:\n    mode: once\n')
+    plan = tables.plan(params_file=str(path), mode='continuous')
+    assert plan['diagnoser'] == [*file, '-p', 'vehicle:="hummingbird"', '-p', 'mode:="continuous"']
+
+
+def test_a_parameter_file_that_would_overrule_the_arguments_is_refused(tmp_path):
+    path, tables = tmp_path / 'some.yaml', Tables('diagnose')
+    everybody = '/**:\n  ros__parameters:\n    use_sim_time: false\n'
+    one = '/**/diagnoser:\n  ros__parameters:\n    vehicle: iris\n'
+    path.write_text(everybody + one)
+    with pytest.raises(InputError, match=r'/\*\*/diagnoser sets .*; move /\*\* to the end of the'):
+        tables.plan(params_file=str(path), vehicle='quad.yaml')
+    file = ['--params-file', str(path)]
+    assert tables.plan(params_file=str(path))['diagnoser'] == file
+    assert tables.plan(params_file=str(path), mode='once')['diagnoser'] == [
+        *file, '-p', 'mode:="once"']
+    path.write_text(one + everybody)
+    assert tables.plan(params_file=str(path), vehicle='quad.yaml')['diagnoser'] == [
+        *file, '-p', 'vehicle:="quad.yaml"']
