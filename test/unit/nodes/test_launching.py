@@ -129,7 +129,7 @@ def test_arguments_that_are_given_arrive_at_their_nodes(described):
     ('', '/fleet/uav1', 'fleet/uav1/'), ('left', '/fleet/uav1/left', 'fleet/uav1/left/'),
     ('/uav2', '/uav2', 'uav2/')])
 def test_the_namespace_of_a_group_counts(described, tmp_path, namespace, whole, prefix):
-    """PushRosNamespace keeps it in ros_namespace, and launch_ros puts it before that of a node."""
+    """A group (PushRosNamespace) has it in ros_namespace; launch_ros puts it before a node's."""
     file = tmp_path / 'some.yaml'
     file.write_text(f'{whole}/recorder:\n  ros__parameters:\n    overlap: 0.5\n')
     _, nodes = described('identify', ros_namespace='/fleet/uav1', namespace=namespace,
