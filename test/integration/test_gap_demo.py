@@ -4,6 +4,8 @@
 
 from concurrent.futures import ThreadPoolExecutor
 import json
+from pathlib import Path
+import re
 import subprocess
 import sys
 
@@ -20,6 +22,7 @@ from quad_ident_ros.nodes.qos import latched
 from quad_ident_ros.nodes.recorder import Recorder
 
 SEED = '4'      # a drag of the rotors
+ROOT = Path(__file__).parents[2]
 
 
 def run(*words):
@@ -48,6 +51,20 @@ def test_the_hidden_effect_is_named_and_the_truth_printed_last(demo):
     assert verdict < truth_at < said.index('to repeat: --seed')
     assert f'({list(truth)[0]}), ' in said[truth_at:]
     assert f'flight_*.csv --vehicle {folder / "nominal.yaml"} --report' in said
+
+
+@pytest.mark.parametrize('page', ['README.md', 'docs/diagnosis.md'])
+def test_a_page_prints_what_it_prints(demo, page):
+    """The names of flights differ between a demo and files, and columns with the terminal."""
+    def parts(text):
+        verdict = re.search(r'^verdict: .*$', text, re.M)[0]
+        row = re.search(rf'^ {name} .*$', text, re.M)[0]
+        rest = re.search(r'^probability of effects not in the table: .*$', text, re.M)[0]
+        return verdict, re.split(r' {2,}', row.strip())[:4], rest.strip()
+
+    _, said, data = demo
+    name = list(data['effects'])[0]
+    assert parts((ROOT / page).read_text(encoding='utf-8')) == parts(said)
 
 
 def test_the_diagnosing_process_was_not_told(demo):
