@@ -26,5 +26,5 @@ NOISES = {
     EVALUATION: ('laplace', 'breathing', 'uneven')}
 STRANGERS = {
     DEVELOPMENT: ('periodic_force', 'tether', 'thrust_exponent', 'backlash', 'updraft', 'slosh',
-                  'ceiling', 'neighbours'),
-    EVALUATION: ('wall', 'whirl', 'stutter', 'compass')}
+                  'ceiling', 'neighbours', 'compass'),
+    EVALUATION: ('wall', 'whirl', 'stutter', 'branches')}

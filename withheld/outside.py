@@ -222,10 +222,43 @@ class Compass(Influence):
         return out
 
 
+class Branches(Influence):
+    """
+    Branches that the vehicle brushes: short pushes aside, off the centre, now and then.
+
+    As vehicles that fly among trees meet them in practice; each push is half a wave long.
+    """
+
+    LAST, EVERY, COUNT = 0.2, 1.2, 100          # s, s on average, so many in a flight
+    AWAY = 0.5                                  # radii of a rotor, from the centre
+
+    def __init__(self, size, weight, radius, rng):
+        """Take how hard they push, N, and where, m."""
+        self.push, self.away = 0.04 * size * weight, self.AWAY * radius
+
+    def begin(self, rng):
+        """Draw when, whereto, and at which side of the body."""
+        self.times = np.cumsum(rng.exponential(self.EVERY, self.COUNT))
+        angles = rng.uniform(0.0, 2.0 * np.pi, (2, self.COUNT))
+        self.onto, self.sides = (np.column_stack([np.cos(one), np.sin(one), 0.0 * one])
+                                 for one in angles)
+
+    def wrench(self, now):
+        """Return force and moment."""
+        last = int(np.searchsorted(self.times, now.time)) - 1
+        since = now.time - self.times[max(last, 0)]
+        if last < 0 or since >= self.LAST:
+            return None
+        push = self.push * np.sin(np.pi * since / self.LAST) * self.onto[last]
+        force = now.rotation.T @ push
+        return force, np.cross(self.away * self.sides[last], force)
+
+
 # Each with what of the vehicle its size is measured by.
 KINDS = {'periodic_force': (Periodic, 'weight'), 'tether': (Tether, 'weight'),
          'updraft': (Updraft, 'weight'), 'thrust_exponent': (Exponent, 'hover'),
          'backlash': (Backlash, 'hover'), 'slosh': (Slosh, 'mass'),
          'ceiling': (Ceiling, 'radius'), 'neighbours': (Neighbours, 'hover'),
          'wall': (Wall, 'radius', 'weight'), 'whirl': (Whirl, 'weight'),
-         'stutter': (Stutter, 'rotors'), 'compass': (Compass,)}
+         'stutter': (Stutter, 'rotors'), 'compass': (Compass,),
+         'branches': (Branches, 'weight', 'radius')}

@@ -184,3 +184,16 @@ def test_a_compass_errs_about_the_vertical_alone():
         assert turn[:2] == pytest.approx(np.zeros(2), abs=1e-12)
         errors.append(turn[2])
     assert np.ptp(errors) > 0.02 and np.abs(errors).max() < 0.2
+
+
+def test_branches_push_aside_off_the_centre_now_and_then():
+    branches, pushes = outside.Branches(1.0, 5.0, 0.1, np.random.default_rng(1)), []
+    branches.begin(np.random.default_rng(2))
+    for t in np.arange(0.0, 20.0, 0.01):
+        extra = branches.wrench(SimpleNamespace(time=t, rotation=np.eye(3)))
+        pushes.append(np.zeros((2, 3)) if extra is None else np.array(extra))
+    forces, moments = np.moveaxis(np.array(pushes), 1, 0)
+    sizes = np.linalg.norm(forces, axis=1)
+    assert 0.05 < np.mean(sizes > 0.0) < 0.3 and not np.any(forces[:, 2])
+    assert sizes.max() == pytest.approx(branches.push, rel=0.02)
+    assert 0.0 < np.abs(moments).max() <= branches.away * branches.push
