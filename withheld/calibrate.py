@@ -20,15 +20,15 @@ from withheld.score import column_of, findings_of, named_in, reliability, TITLES
 Array = NDArray[np.float64]
 
 # Of a row of the ranking, as the library takes them (diagnose/probability.py), in its order; with
-# `behind`: whether another effect contributes more.
+# `lesser`: whether another effect contributes more.
 FEATURES: dict[str, Callable[[dict], float]] = {
     'contribution': lambda row: size_shown(row['contribution'], row.get('distance') or 0.0),
     'distance': lambda row: float(np.log1p(row.get('distance') or 0.0)),
     'companions': lambda row: float(row.get('companions') or 0.0),
-    'behind': lambda row: row['behind'] * float(np.log1p(row.get('distance') or 0.0))}
+    'lesser': lambda row: row['lesser'] * float(np.log1p(row.get('distance') or 0.0))}
 # Where an effect is as probable as not: alone, closing all that can be closed, two standard errors
-# from none. Nearly all flights of development have an effect, and a user's need not: their base
-# rate would name what is 1.5 standard errors from none.
+# from none. Nearly all flights of development have an effect, and a user's need not: with
+# their base rate less than two standard errors would suffice.
 EVEN = {'contribution': size_shown(1.0, 2.0), 'distance': float(np.log1p(2.0))}
 # Effects that act alike: where one is present, a probability of the other is not wrong.
 ALIKE = ({'thrust_scale', 'mass_offset'}, {'actuation_delay', 'motor_lag'})
@@ -85,7 +85,7 @@ def rows_of(pairs: Iterable[tuple[dict, dict]], features: dict = FEATURES) -> Ro
             effect = row['effect']
             if effect not in there and (effect in allowed or _alike(effect, there, found)):
                 continue
-            known = row | {'behind': row['contribution'] < most}
+            known = row | {'lesser': row['contribution'] < most}
             x.append([value_of(known) for value_of in features.values()])
             present.append(float(effect in there))
             groups.append(column_of(label))

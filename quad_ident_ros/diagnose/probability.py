@@ -19,7 +19,7 @@ class Weight:
     see judgement.stability; explained: the share of its contribution that its form explains;
     gap {group: ...}: without it; distance: by how many standard errors its parameters together
     differ from no effect, see bench.standard_errors_from_none; companions: how many other
-    effects clearly contribute beside it; behind: whether another effect contributes more.
+    effects clearly contribute beside it; lesser: whether another effect contributes more.
     """
 
     contribution: float
@@ -28,7 +28,7 @@ class Weight:
     gap: dict
     distance: float
     companions: int = 0
-    behind: bool = False
+    lesser: bool = False
 
 
 def beside_others(weights: dict, rules: Rules) -> dict:
@@ -42,7 +42,7 @@ def beside_others(weights: dict, rules: Rules) -> dict:
     clear = {cause for cause, one in weights.items()
              if one.contribution >= contribution and one.stability >= steadiness}
     most = max((one.contribution for one in weights.values()), default=0.0)
-    return {cause: replace(one, companions=len(clear - {cause}), behind=one.contribution < most)
+    return {cause: replace(one, companions=len(clear - {cause}), lesser=one.contribution < most)
             for cause, one in weights.items()}
 
 
@@ -91,9 +91,9 @@ def presence(weight: Weight, rules: Rules, shift: float = 0.0) -> float:
     formulas are wrong by is not known well. They tell less of an effect that may stand for what
     the formula of a greater one is wrong by.
     """
-    base, share, far, beside, behind = rules.calibration
+    base, share, far, beside, lesser = rules.calibration
     value = (base + share * size_shown(weight.contribution, weight.distance)
-             + (far + behind * weight.behind) * np.log1p(weight.distance)
+             + (far + lesser * weight.lesser) * np.log1p(weight.distance)
              + beside * weight.companions + shift)
     return float(1.0 / (1.0 + np.exp(-value)))
 

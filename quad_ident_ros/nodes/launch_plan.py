@@ -14,7 +14,7 @@ from quad_ident_ros.nodes.parameter_files import (
     given_to,
     is_for,
     names_in,
-    overruling,
+    overriding,
     words_for,
 )
 
@@ -92,7 +92,7 @@ def planned(nodes: Sequence[str], arguments: Sequence[Argument], values: Mapping
 
     Args: nodes: of this package, the simulator first; arguments of the launch file; values: their
     texts by name; usual: {node: {parameter: value}} of a
-    flight that is simulated, before the parameter file has the say.
+    flight that is simulated, which the parameter file overrides.
     Raises InputError for values of another type, and for those of a simulator that is not started.
     """
     simulate = _value(SIMULATE, values)
@@ -127,11 +127,11 @@ def planned(nodes: Sequence[str], arguments: Sequence[Argument], values: Mapping
     respawn = _value(RESPAWN, values) if values.get(RESPAWN.name, '') else not simulate
     plans = []
     for node in started:
-        if key := overruling(data, node, names[node], given[node]):
+        if key := overriding(data, node, names[node], given[node]):
             raise InputError(f'launch argument params_file: {path}: what {key} sets would '
-                             'overrule the launch arguments, for /** stands before it; move /** '
+                             'override launch arguments, because /** stands before it; move /** '
                              'to the end of the file')
-        # Behind the file, for there -p has the say: before it, it would not.
+        # ROS 2 takes the later of two values: arguments come after the file.
         words = {name: value for name, value in usual.get(node, {}).items()
                  if name not in filed[node]} | given[node]
         plans.append(Planned(node, (*_file(path, data, node, names), *words_for(words), *clock),

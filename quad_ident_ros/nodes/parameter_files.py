@@ -4,7 +4,7 @@
 
 import json
 
-EVERYBODY = '/**'    # the name of all nodes, for which -p without a name is
+EVERY_NODE = '/**'     # the name that -p has where no node is named
 
 
 def names_in(data):
@@ -26,16 +26,16 @@ def given_to(data, name, full_name):
     return given
 
 
-def overruling(data, name, full_name, given):
+def overriding(data, name, full_name, given):
     """
-    Return the name in a parameter file whose values have the say over -p of given ones, or ''.
+    Return the name in a parameter file whose values override given ones of -p, or ''.
 
-    ROS 2 keeps values by the name that they are for, in the order in which the names come first;
-    later ones count. The name of -p is /**.
+    ROS 2 applies values by the name that they are for, in the order in which these names first
+    occur, and the last one counts. The name of -p is /**.
     """
     behind = False
     for key, parameters in _entries(data, ''):
-        if key == EVERYBODY:
+        if key == EVERY_NODE:
             behind = True
         elif behind and _matches(key, name, full_name) and isinstance(parameters, dict) \
                 and not given.keys().isdisjoint(parameters):

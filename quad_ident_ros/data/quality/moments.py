@@ -42,8 +42,8 @@ def unit(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     if factor is not None and ARM in record.info and _near(factor, arm * arm):
         return [Finding(
             'input_unit', severity, 'u2, u3',
-            f'they turn {vehicle.name} as forces would that were divided by its arms of '
-            f'{arm:.3g} m once more: the torque that they come from was a force (N)',
+            f'they turn {vehicle.name} like forces that were divided by its arm length, '
+            f'{arm:.3g} m, a second time: the torque they come from was already a force (N)',
             'publish the torque of the WrenchStamped in N m')]
     if factor is None or not _near(factor, 1.0):
         return []

@@ -22,8 +22,8 @@ Named = namedtuple('Named', 'effect form')
 RULE = replace(RULES, calibration=(-1.0, 1.5, 2.0, 0.3, -0.7))
 
 
-def of(contribution, distance, companions=0, stability=5.0, behind=False):
-    return Weight(contribution, stability, 0.9, {}, distance, companions, behind)
+def of(contribution, distance, companions=0, stability=5.0, lesser=False):
+    return Weight(contribution, stability, 0.9, {}, distance, companions, lesser)
 
 
 @pytest.mark.parametrize(('contribution', 'distance', 'companions', 'size'),
@@ -37,7 +37,7 @@ def test_it_is_the_logistic_function_of_a_weighted_sum(contribution, distance, c
     assert presence(of(contribution, distance, companions), RULE) == pytest.approx(
         1.0 / (1.0 + np.exp(-value)))
     value -= 0.7 * np.log(1.0 + distance)
-    assert presence(of(contribution, distance, companions, behind=True), RULE) == pytest.approx(
+    assert presence(of(contribution, distance, companions, lesser=True), RULE) == pytest.approx(
         1.0 / (1.0 + np.exp(-value)))
 
 
@@ -46,7 +46,7 @@ def test_more_of_anything_that_speaks_for_it_makes_it_more_probable():
     assert presence(of(0.5, 5.0), RULES) > base
     assert presence(of(0.1, 9.0), RULES) > base
     assert presence(of(0.1, 5.0, 1), RULES) > base
-    assert presence(of(0.1, 5.0, behind=True), RULES) < base
+    assert presence(of(0.1, 5.0, lesser=True), RULES) < base
 
 
 def test_all_that_there_is_at_two_standard_errors_is_as_probable_as_not():
@@ -60,10 +60,10 @@ def test_companions_are_the_others_that_clearly_contribute():
     assert [found[name].companions for name in 'abcd'] == [1, 1, 2, 2]
 
 
-def test_all_but_the_greatest_are_behind_another():
+def test_all_but_the_greatest_are_lesser_ones():
     found = beside_others({'a': of(0.3, 9.0), 'b': of(0.5, 2.0), 'c': of(0.1, 5.0)}, RULES)
-    assert [found[name].behind for name in 'abc'] == [True, False, True]
-    assert not beside_others({'a': of(0.3, 9.0)}, RULES)['a'].behind
+    assert [found[name].lesser for name in 'abc'] == [True, False, True]
+    assert not beside_others({'a': of(0.3, 9.0)}, RULES)['a'].lesser
 
 
 @pytest.mark.parametrize('contribution', [-1.0, 0.0, 1e6])

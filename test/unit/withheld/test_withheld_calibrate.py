@@ -74,13 +74,13 @@ def test_rows_are_those_of_the_best_set_with_the_librarys_limits():
     found = ranked('wind', 'inflow')
     found['ranking'].append({'effect': 'body_drag', 'contribution': None})
     rows = calibrate.rows_of([(label('wind'), found)])
-    assert rows.names == ('contribution', 'distance', 'companions', 'behind')
+    assert rows.names == ('contribution', 'distance', 'companions', 'lesser')
     row = [np.sqrt(0.5 * 80.0 / 81.0), np.log(10.0), 2.0]
     assert rows.x == pytest.approx(np.array([[*row, 0.0], [*row, 0.0]]))
     assert rows.present.tolist() == [1.0, 0.0] and rows.groups == ('ours', 'ours')
 
 
-def test_an_effect_that_contributes_less_than_another_is_behind_it():
+def test_an_effect_that_contributes_less_than_another_is_a_lesser_one():
     found = {'ranking': ranked('wind')['ranking'] + ranked('inflow', contribution=0.4)['ranking']}
     rows = calibrate.rows_of([(label('wind'), found)])
     assert rows.x[:, 3] == pytest.approx([0.0, np.log(10.0)])
