@@ -135,7 +135,8 @@ def test_what_others_publish_on_its_domain_ends_the_demo_at_once(tmp_path, other
             if others == 'recorder':
                 graph.start(Recorder)
             else:
-                graph.advertise(PoseStamped, 'pose', 10)
+                # Nobody is waited for: the demo may end before this side sees who listens.
+                graph.probe.create_publisher(PoseStamped, 'pose', 10)
             _, errors = demo.communicate(timeout=30)
         finally:
             graph.close()
