@@ -274,6 +274,19 @@ class Bench:
                 | {column: float(whole if column in out else error) for column, error, whole
                    in zip(best.columns, errors, self.selection.errors, strict=True)})
 
+    def errors_by_file(self) -> dict[int, float]:
+        """
+        Return {column: standard error} that the constants of the file add to the best set's.
+
+        What differs from a constant itself, as a factor on the inertia, counts from the file.
+        """
+        best = self.selection.best
+        relative = {column for cause in best.causes if EFFECTS[cause.effect].scale_group
+                    for column in cause.columns}
+        return {column: float(error) for column, error in
+                zip(best.estimate.columns, self.selection.by_file, strict=True)
+                if column not in relative}
+
     def taken_out(self, model: Model) -> list[int]:
         """Return the columns of the best set's effects that a Model has not, but one tied to."""
         best, there = self.selection.best, {*model.effects}

@@ -62,6 +62,11 @@ class Rules:
       form_error: relative error of an effect's formula. Published laws of one effect differ from
         one another by 10 to 30 % over the range in which they are used. A fleet may know better.
       form_time: s over which that error stays the same: that of a turn or a stop of a flight.
+    Vehicle file:
+      constant_error: how far a constant is usually off whose file states no deviation, as a share:
+        a pendulum, a ruler and a thrust stand leave some percent open. Of mass and thrust, which
+        are what the others show beside, none counts. drag_error: that of a drag: published ones
+        of one vehicle differ by some tens of percent.
     Probability:
       calibration: constant, and weights of the size that the contribution shows, of the logarithm
         of one plus the standard errors from no effect, of the companions, and of that logarithm
@@ -141,6 +146,8 @@ class Rules:
     usual_presence: float = 0.1
     form_error: float = 0.2
     form_time: float = 1.0
+    constant_error: float = 0.05
+    drag_error: float = 0.2
     horizon: float = 0.5
     near_horizon: float = 0.1
     steady_block: float = 2.0

@@ -3,19 +3,20 @@
 """Standard errors of a fitted set: by noise, and by how wrong flights show its formulas to be."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.linalg import block_diag
 
 from quad_ident_ros.diagnose.discrepancy import log_likelihood, scales
+from quad_ident_ros.diagnose.file_errors import with_constants
 from quad_ident_ros.diagnose.fitted import distances_of, Fitted
 from quad_ident_ros.diagnose.frame import blocks_at, Frame, frame_at, normal_at
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.diagnose.sensor_errors import sensor_covariance
 from quad_ident_ros.greybox.estimate import Estimate
 from quad_ident_ros.greybox.flights import Flight
-from quad_ident_ros.greybox.normal import covariance_of, marginal, Normal, scatter_of
+from quad_ident_ros.greybox.normal import covariance_of, first_of, marginal, Normal
 from quad_ident_ros.greybox.nuisances import Layout
 from quad_ident_ros.greybox.parameters import INDEX, limits, uncertain_constants
 from quad_ident_ros.model.vehicle import Vehicle
@@ -35,7 +36,7 @@ class Joint:
     it errors of the sensors make; constants: names of those
     that it states a deviation of, and stated (C + K, C + K): the covariance with these, as far as
     flights and deviations leave them; form_errors {effect: (G,)}: the log-likelihood of each of
-    OF_EACH as the relative error of its formula.
+    OF_EACH as the relative error of its formula; form_error: the likeliest one of all formulas.
     """
 
     covariance: np.ndarray
@@ -43,6 +44,7 @@ class Joint:
     constants: tuple[str, ...]
     stated: np.ndarray
     form_errors: dict[str, np.ndarray] = field(default_factory=dict)
+    form_error: float = 0.0
 
     @property
     def errors(self) -> np.ndarray:
@@ -57,8 +59,7 @@ def joint_of(fitted: Fitted, flights: Sequence[Flight], frame: Frame, vehicle: V
 
     The sizes of the discrepancy, that of the relative error of formulas among them, are the
     likeliest ones: where the formulas are exact this is the error that the noise makes. Otherwise
-    as rules say. Where flights would rather have other constants than the file's, their
-    distance counts as an error: the vehicle that is named has those of the file.
+    as rules say.
     Args: frame: around the set; grids: sizes of force and moment that Fitted.sizes are places in;
     scatter: what differences of the cost are divided by.
     """
@@ -91,24 +92,10 @@ def joint_of(fitted: Fitted, flights: Sequence[Flight], frame: Frame, vehicle: V
     shared = of(fit)
     size, count = limits(vehicle)[2, columns], len(fit.columns)
     sensors = sensor_covariance(fit, flights, vehicle.gravity, rules, size[:count],
-                                lambda one: _first(of(one), count))
-    exact = covariance_of(_first(shared, count), size[:count]) + sensors
+                                lambda one: first_of(of(one), count))
+    exact = covariance_of(first_of(shared, count), size[:count]) + sensors
     if not constants:
-        return Joint(exact, sensors, (), exact, form_errors)
-    # One scatter for all, the largest: what scales the whole motion stays in proportion.
-    widest = float(scatter_of(shared).max())
-    information, gradient = shared.information / widest, shared.gradient / widest
-    known = np.append(np.zeros(count), np.array(list(constants.values())) ** -2.0)
-    white = Normal(information, gradient, shared.cost, shared.scores[:0])
-    whole = covariance_of(replace(white, information=information + np.diag(known)), size)
-    shift = whole @ gradient
-    shift[:count] -= covariance_of(_first(white, count), size[:count]) @ gradient[:count]
-    whole += np.outer(shift, shift)
+        return Joint(exact, sensors, (), exact, form_errors, form_error)
+    _, whole = with_constants(shared, np.array(list(constants.values())), size)
     whole[:count, :count] += sensors
-    return Joint(exact, sensors, tuple(constants), whole, form_errors)
-
-
-def _first(normal: Normal, count: int) -> Normal:
-    """Return the information on the first columns, the others held."""
-    return replace(normal, information=normal.information[:count, :count],
-                   gradient=normal.gradient[:count], scores=normal.scores[:, :count])
+    return Joint(exact, sensors, tuple(constants), whole, form_errors, form_error)

@@ -15,8 +15,8 @@ def known_together(bench: Bench, model: Model) -> Covariance | None:
     Return the Covariance of a Model's columns, and of constants whose file states a deviation.
 
     None where there is neither. The correlation is that of the Joint of the best set, or that by
-    the noise of a model which has other forms; deviations are the reported standard errors,
-    widened by what the constants leave open.
+    the noise of a model which has other forms; deviations are the reported standard errors, but
+    for constants without a stated deviation: the vehicle of this covariance has them as they are.
     """
     best, joint = bench.selection.best.estimate, bench.selection.joint
     columns, constants = model.estimate.columns, joint.constants

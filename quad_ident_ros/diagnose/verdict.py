@@ -130,7 +130,7 @@ def _ranking(bench: Bench, judged: Judgement, causes: tuple, total: dict,
              ruled_out: Sequence[str]) -> tuple[Ranked, ...]:
     """Return every effect, the named ones by contribution, then the most probable first."""
     z0, model, best = nominal(bench.vehicle), judged.model, bench.selection.best
-    errors = bench.errors(model)
+    errors, by_file = bench.errors(model), bench.errors_by_file()
     track = bench.tracks[-1]
     nuisance = model.vectors[-1] - model.z
     before = gaps.gap([gaps.ends(track, bench.vehicle, z0 + nuisance, bench.horizon)])
@@ -147,8 +147,8 @@ def _ranking(bench: Bench, judged: Judgement, causes: tuple, total: dict,
                 name = NAMES[column].split('.')[1]
                 change = (float(z[column] - z0[column])
                           if cause.effect in bench.vehicle.effects else None)
-                parameters[name] = Value(float(z[column]), float(errors[column]), units[name],
-                                         change)
+                std = float(np.hypot(errors[column], by_file.get(column, 0.0)))
+                parameters[name] = Value(float(z[column]), std, units[name], change)
             alone = z0.copy()
             alone[list(cause.columns)] = z[list(cause.columns)]
             gap_after = gaps.gap([gaps.ends(track, bench.vehicle, alone + nuisance,

@@ -3,7 +3,7 @@
 """Normal equations of flights: what is shared by all of them, and the nuisances of each."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.special import chdtri
@@ -117,6 +117,12 @@ def marginal(normal: Normal, shared: int, precision: np.ndarray) -> Normal:
     return Normal(normal.information[:shared, :shared] - normal.information[:shared, rest] @ ties,
                   normal.gradient[:shared] - normal.gradient[rest] @ ties, normal.cost,
                   normal.scores[:, :shared] - normal.scores[:, rest] @ ties)
+
+
+def first_of(normal: Normal, count: int) -> Normal:
+    """Return the Normal of the first columns, the others held."""
+    return replace(normal, information=normal.information[:count, :count],
+                   gradient=normal.gradient[:count], scores=normal.scores[:, :count])
 
 
 def covariance_of(normal: Normal, size: np.ndarray) -> np.ndarray:

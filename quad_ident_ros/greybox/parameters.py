@@ -30,6 +30,10 @@ FACTORS = {
 """Parameters of effects that are a factor on a constant, by constant."""
 OFFSETS = {'mass': ('mass_offset.mass',)}
 """Parameters of effects that are added to a constant, by constant."""
+ARMS = {f'inertia_mismatch.arms_{axis}': axis for axis in 'xy'}
+"""Factors on the arms of the rotors, with the body axis along which they are."""
+MOMENTS = tuple(f'inertia_mismatch.moment_{axis}' for axis in 'xy')
+"""The same about the other axis each, by another form."""
 RATIOS = {
     **{f'inertia_mismatch.inertia_{axis}': (f'inertia_{axis}', 'inertia_x') for axis in 'yz'},
     'inertia_mismatch.moment_z': ('torque_coefficient', 'inertia_x')}
@@ -53,6 +57,41 @@ def uncertain_constants(vehicle: Vehicle, columns: Iterable[int]) -> dict[str, f
     same = estimated | constants_within(estimated)
     return {name: std for name, std in stated(vehicle).items()
             if name in INDEX and name not in same}
+
+
+def constants_behind(vehicle: Vehicle, columns: Iterable[int], share: float, drag: float
+                     ) -> dict[str, float]:
+    """
+    Return {name: deviation} of the constants of a file that an estimate takes as exact.
+
+    As the file states it. Where it states none: a share of the constant, another one of drags,
+    and none of mass, gravity and thrust coefficient, beside which motion shows all others. The
+    arms are the factors on them.
+    """
+    estimated = {NAMES[column] for column in columns}
+    values, known = nominal(vehicle), uncertain_constants(vehicle, columns)
+    shares = {**{f'inertia_{axis}': share for axis in 'xyz'}, 'torque_coefficient': share,
+              'rotor_radius': share,
+              **{f'{kind}_drag_{axis}': drag for kind in ('linear', 'rotational')
+                 for axis in 'xyz'}}
+    given = {*stated(vehicle), *constants_within(estimated)}
+    found = {name: one * abs(values[INDEX[name]]) for name, one in shares.items()
+             if name not in given}
+    if not estimated & {*ARMS, *MOMENTS}:
+        found |= {name: _of_arms(vehicle, axis, share) for name, axis in ARMS.items()}
+    return known | {name: float(one) for name, one in found.items() if one > 0.0}
+
+
+def _of_arms(vehicle: Vehicle, axis: str, share: float) -> float:
+    """Return the deviation of the factor on the arms along an axis by those of the places."""
+    places = np.array([rotor.position['xyz'.index(axis)] for rotor in vehicle.rotors])
+    known = stated(vehicle)
+    each = np.array([known.get(f'rotors[{k}].position_{axis}', np.nan)
+                     for k in range(len(places))])
+    power = float(places @ places)
+    if np.isnan(each).any() or power == 0.0:
+        return share
+    return float(np.linalg.norm(places * each)) / power
 
 
 def nominal(vehicle: Vehicle) -> np.ndarray:

@@ -94,11 +94,13 @@ def flights():
 
 
 @pytest.mark.slow
-def test_deviations_are_the_standard_errors_that_are_told(flights):
+def test_deviations_are_the_standard_errors_that_are_told_without_what_the_file_adds(flights):
     found = diagnose(flights, BARE, effects=['rotor_drag', 'motor_lag'])
     told = {f'{row.effect}.{name}': value.std for row in found.ranking
             for name, value in row.parameters.items()}
-    assert dict(zip(found.covariance.names, found.covariance.stds, strict=True)) == told
+    known = dict(zip(found.covariance.names, found.covariance.stds, strict=True))
+    assert known.keys() == told.keys()
+    assert all(known[name] <= told[name] < 2.0 * known[name] for name in known)
     assert found.corrected(BARE).covariance == found.covariance
     assert found.as_data()['covariance']['correlation'][0][0] == 1.0
     # A second round that estimates nothing leaves what the first one wrote.
