@@ -18,8 +18,8 @@ UNITS = {'usec': 'us', 'µs': 'us', 'msec': 'ms', 'sec': 's', 'secs': 's', 'seco
          'v': 'V', 'mv': 'mV', "g's": 'g',
          'u/min': 'rpm', 'tr/min': 'rpm', '1/min': 'rpm', 'min^-1': 'rpm', 'grad': 'deg',
          'grad/s': 'deg/s', 'sekunden': 's', 'minutes': 'min', 'feet': 'ft', 'fps': 'ft/s',
-         'kmh': 'km/h', 'kph': 'km/h', 'hz': 'Hz', 'rps': 'Hz', 'rev/s': 'Hz', 'u/s': 'Hz',
-         'tr/s': 'Hz'}
+         'kmh': 'km/h', 'kph': 'km/h', 'mi/h': 'mph', 'kt': 'kn', 'knots': 'kn',
+         'hz': 'Hz', 'rps': 'Hz', 'rev/s': 'Hz', 'u/s': 'Hz', 'tr/s': 'Hz'}
 NOT = re.compile(r'(^|_)(sp|setpoint|des|desired|ref|reference|target|goal|cov|covariance|var|'
                  r'std|err|error|raw|bias|offset|mag)(_|$)|^b_[awg]_')
 """Of names that are not what was measured; b_w and b_a are biases."""

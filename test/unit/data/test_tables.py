@@ -80,6 +80,8 @@ def test_units_are_told_by_names_and_values(tmp_path):
     (PLACE, ('x', 'y', 'z'), 'ft', 0.3048), (PLACE, ('x', 'y', 'z'), 'feet', 0.3048),
     (SPEED, ('vel_x', 'vel_y', 'vel_z'), 'km/h', 1 / 3.6),
     (SPEED, ('vel_x', 'vel_y', 'vel_z'), 'ft/s', 0.3048),
+    (SPEED, ('vel_x', 'vel_y', 'vel_z'), 'MPH', 0.44704),
+    (SPEED, ('vel_x', 'vel_y', 'vel_z'), 'kt', 1852 / 3600),
     (RATE, ('gyro_x', 'gyro_y', 'gyro_z'), 'mrad/s', 1e-3)])
 def test_a_unit_in_the_name_is_read_though_it_is_no_usual_one(tmp_path, group, names, unit,
                                                              factor):
