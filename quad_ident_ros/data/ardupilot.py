@@ -377,7 +377,7 @@ def _rotors(messages: Messages | None, channels: dict[int, int], notes: list[str
                      'the order of the ESCs')
     some = [messages.only(messages.rows[field] == number) for number in instances]
     return [Stream(f'message ESC[{number}]', one.rows['TimeUS'].astype(np.int64) * 1000,
-                   {f'rotor{k}': one.values('RPM') * (np.pi / 30.0)})
+                   {f'rotor{k}': np.abs(one.values('RPM')) * (np.pi / 30.0)})  # less: in reverse
             for k, (number, one) in enumerate(zip(instances, some, strict=True), 1)]
 
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from quad_ident_ros.data.bag_file import BagFile
 from quad_ident_ros.data.bag_guess import guessed
+from quad_ident_ros.data.by_vehicle import by_vehicle
 from quad_ident_ros.data.csv import read_csv
 from quad_ident_ros.data.guess import guess
 from quad_ident_ros.data.load import reader_of
@@ -46,7 +47,7 @@ def begin_mapping(out: str | Path, path: str | Path, streams: Sequence[Content])
         text = table_text(path, _of_record(path), [], [])
     elif name in TABLES:
         table = TABLES[name](path)
-        found = guess(table)
+        found = guess(next(iter(by_vehicle(table).values())))
         text = table_text(path, found.mapping, found.doubts, list(table.columns))
     else:
         text = names_text(path, *_outputs(path), _instances(streams))

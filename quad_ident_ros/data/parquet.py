@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tables in Parquet files."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -33,13 +34,14 @@ def read_parquet(path: Path) -> Table:
                 break
             found = found.flatten()
         columns: dict[str, np.ndarray] = {}
-        text = []
+        text: dict[str, Sequence[str]] = {}
         for name, column in zip(found.column_names, found.columns, strict=True):
             if name == _INDEX and 'time' not in found.column_names and _is_time(pyarrow, column):
                 name = 'time'
             if not name.isprintable() or not name.strip() or name.strip() in columns:
                 continue
             values = _numbers(pyarrow, column)
+            cells: list[str] = []
             entries = _entries(pyarrow, column)
             if entries is not None:
                 columns |= {f'{name.strip()}[{k}]': entry for k, entry in enumerate(entries)}
@@ -48,7 +50,7 @@ def read_parquet(path: Path) -> Table:
                 cells = [(cell or '').strip() for cell in column.to_pylist()]
                 values = numbers_in(path, name, cells, False, lambda k: f'row {k + 1}')
             if values is None:
-                text.append(name)
+                text[name] = cells
             else:
                 columns[name.strip()] = values
     except InputError:
@@ -61,7 +63,7 @@ def read_parquet(path: Path) -> Table:
         raise InputError(f'{path}: there are fewer than 2 rows of numbers; give a table with '
                          f'samples{left_out(text, "; ")}')
     columns, told = with_whole_stamps(columns)
-    return Table(columns, {}, (*told, *noted(text)), 'Parquet', text=tuple(text))
+    return Table(columns, {}, (*told, *noted(text)), 'Parquet', text=text)
 
 
 def _is_time(pyarrow: Any, column: Any) -> bool:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from quad_ident_ros.data.differentiated import missing_motion, with_motion
+from quad_ident_ros.data.differentiated import with_motion
 from quad_ident_ros.data.modes import mode_spans
 from quad_ident_ros.data.quality import (
     clock_offset,
@@ -76,9 +76,9 @@ def summarise(record: FlightRecord, vehicle: Vehicle | None = None, more: Sequen
 def _findings(record: FlightRecord, vehicle: Vehicle | None) -> tuple[Finding, ...]:
     """Return the Findings on a record, those of OF_GROUND on what diagnose and fit keep of it."""
     found = findings(record, vehicle)
-    whole = with_motion(record) if vehicle is not None and missing_motion(record) and not any(
+    whole = with_motion(record) if vehicle is not None and not any(
         one.severity == 'error' for one in found) else record
-    if whole is not record:     # what diagnose and fit refuse with the velocity that they take
+    if whole is not record:     # what diagnose and fit refuse with the motion that they take
         found = gravest_first([*found, *(one for one in findings(whole, vehicle)
                                          if one.severity == 'error')])
     if vehicle is None or not any(one.code == 'ground' and one.severity == 'warning'

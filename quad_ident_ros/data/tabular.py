@@ -3,9 +3,9 @@
 """Tables of other people: text with any separator, decimal commas, units in a line."""
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 import csv
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 import re
 
@@ -44,7 +44,7 @@ class Table:
     columns: name -> (N,) float, nan for an empty cell; units: name -> unit, where a line says
     them; notes: what was left out; how: what separates the cells, for messages; doubts: what the
     program that wrote the table leaves open; rate: Hz, of frames that are counted, or 0; text:
-    names of columns that hold text and were left out.
+    name -> cells of the columns that hold text and are no numbers of a flight.
     """
 
     columns: dict[str, np.ndarray]
@@ -53,7 +53,7 @@ class Table:
     how: str = ''
     doubts: tuple[str, ...] = ()
     rate: float = 0.0
-    text: tuple[str, ...] = ()
+    text: Mapping[str, Sequence[str]] = field(default_factory=dict)
 
 
 def read_text(path: Path, separator: str = '') -> Table:
@@ -65,7 +65,7 @@ def read_text(path: Path, separator: str = '') -> Table:
     begin = first_rows(path, _HEAD + 1)
     layout = _layout(path, *begin, separator) if begin else None
     plain = layout and plain_numbers(path, layout.line - 1, layout.delimiter, layout.comma)
-    text: list[str] = []
+    text: dict[str, Sequence[str]] = {}
     if layout and plain and plain.values.shape[1] == len(layout.names):
         columns, truncated = plain.columns(layout.names), plain.truncated
     else:
@@ -85,7 +85,7 @@ def read_text(path: Path, separator: str = '') -> Table:
         layout.separator, repr(layout.separator))
     return Table(columns, layout.units, (*notes, *told, *noted(text)),
                  f'{how}{", decimal commas" if layout.comma else ""}', layout.doubts, layout.rate,
-                 tuple(text))
+                 text)
 
 
 @dataclass(frozen=True)
@@ -200,8 +200,9 @@ def _is_time(cell: str) -> bool:
     return bool(_DATE.match(cell) or _PASSED.match(cell))
 
 
-_UNITS = frozenset('s sec ms us ns m mm cm m/s mm/s cm/s rad deg rad/s deg/s dps rpm krpm g mg '
-                   'm/s2 m/s^2 m/s² v mv us pwm % 1 - n'.split())
+_UNITS = frozenset('s sec ms us ns min m mm cm ft m/s mm/s cm/s km/h ft/s mph kn rad deg mrad '
+                   'rad/s deg/s dps mrad/s rpm krpm hz g mg m/s2 m/s^2 m/s² v mv us pwm % '
+                   '1 - n'.split())
 
 
 def _is_units(cells: list[str]) -> bool:
@@ -325,8 +326,8 @@ def _since(cells: Sequence[str]) -> np.ndarray:
 
 
 def _thorough(path: Path, rows: list[str], places: list[int], names: list[str], separator: str,
-              comma: bool) -> tuple[dict[str, np.ndarray], list[str]]:
-    """Return the columns of numbers of any table, and the names of those of text."""
+              comma: bool) -> tuple[dict[str, np.ndarray], dict[str, Sequence[str]]]:
+    """Return the columns of numbers of any table, and the cells of those of text."""
     cells, wrong = [], []
     for k, row in zip(places, rows, strict=True):
         line = _cells(row, separator)
@@ -337,13 +338,14 @@ def _thorough(path: Path, rows: list[str], places: list[int], names: list[str], 
         else:
             cells.append(line)
     refuse_uneven(path, wrong, len(names), len(cells))
-    columns, text = {}, []
+    columns: dict[str, np.ndarray] = {}
+    text: dict[str, Sequence[str]] = {}
     for name, column in zip(names, zip(*cells, strict=True), strict=True):
         if not name:
             continue
         values = numbers_in(path, name, column, comma, lambda k: f'line {places[k]}')
         if values is None:
-            text.append(name)
+            text[name] = column
         else:
             columns[name] = values
     return columns, text
@@ -375,7 +377,7 @@ def numbers_in(path: Path, name: str, cells: Sequence[str], comma: bool,
     return None
 
 
-def left_out(text: Sequence[str], begin: str = '') -> str:
+def left_out(text: Iterable[str], begin: str = '') -> str:
     """Return what to say of columns of text, '' where there are none."""
     return f'{begin}columns of text are left out: {shown(text, 5)}' if text else ''
 
@@ -387,6 +389,6 @@ def shown(names: Iterable[str], most: int = 12) -> str:
     return ', '.join(names[:most]) + more
 
 
-def noted(text: Sequence[str]) -> list[str]:
+def noted(text: Iterable[str]) -> list[str]:
     """Return the notes on columns of text."""
     return [left_out(text)] if text else []

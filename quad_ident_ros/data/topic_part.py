@@ -339,7 +339,8 @@ class TopicPart:
             told = actuators or Actuators()
             if kind in TO_SPEED:
                 told = Actuators(told.order, kind)
-            speeds, name = rotor_speeds(self._where, table, told, None), 'rotor'
+            # The sign, which some controllers give, is which way a rotor turns.
+            speeds, name = rotor_speeds(self._where, np.abs(table), told, None), 'rotor'
         elif actuators is None and kind in ('', *TO_SPEED):
             speeds, name = table * TO_SPEED[kind or 'speed'], 'cmd'
         else:

@@ -11,7 +11,7 @@ from quad_ident_ros.data.columns import from_euler, RATE
 from quad_ident_ros.data.guess.draft import Draft, together
 from quad_ident_ros.data.guess.names import ANGLE, PITCH_DOWN
 from quad_ident_ros.data.guess.series import alike, is_unit, ratio_of, unit_length
-from quad_ident_ros.data.mapping import ATTITUDE, Column, factor_of
+from quad_ident_ros.data.mapping import ATTITUDE, Column, factor_of, UNITS
 from quad_ident_ros.data.record import EULER, QUATERNION
 
 LEVEL, TURNED = 40.0, 60.0      # deg: the usual tilt is less; one of another order is more
@@ -63,7 +63,7 @@ def angles(draft: Draft) -> None:
         return
     values = draft.values(names)
     units = {draft.units[name] for name in names}
-    unit = 'deg' if 'deg' in units else 'rad' if 'rad' in units else angle_unit(values)
+    unit = next((unit for unit in ('deg', *UNITS['rad']) if unit in units), angle_unit(values))
     down = _pitch_down(draft, names, values * factor_of('phi', unit))
     draft.take(EULER, names, unit, role='pose', said=f'roll, pitch, yaw in {unit}'
                + (', pitch with the other sign' if down else ''))
@@ -79,7 +79,7 @@ def rates(draft: Draft) -> None:
     names = draft.found[RATE]
     if names is None or any(name not in draft.free for name in names):
         return
-    values, unit = draft.values(names), draft.unit_of(names, ('rad/s', 'deg/s'))
+    values, unit = draft.values(names), draft.unit_of(names, ('rad/s', 'deg/s', 'mrad/s'))
     if not unit and draft.attitude is not None and draft.t is not None:
         turned, measured = draft.turning(draft.attitude, values)
         ratio = ratio_of(measured, turned)

@@ -8,7 +8,7 @@ import numpy as np
 
 from quad_ident_ros.data.guess.draft import Draft, together
 from quad_ident_ros.data.guess.names import TIME
-from quad_ident_ros.data.mapping import Column, factor_of
+from quad_ident_ros.data.mapping import Column, factor_of, UNITS
 
 RATES = 1.0, 10_000.0   # Hz: no log of a flight is slower, or faster, by a factor of two
 CLOCK = 1e9, 4.1e9      # s since 1970: 2001 to 2100
@@ -32,7 +32,7 @@ def time(draft: Draft) -> None:
         return
     name = min(rising, key=lambda name: len(draft.names[name]))
     values, unit = draft.table.columns[name], draft.units[name]
-    if unit not in ('s', 'ms', 'us', 'ns'):
+    if unit not in UNITS['s']:
         unit = time_unit(values)
     if not unit:
         draft.guess.doubts.append(f't: the unit of {name!r}')

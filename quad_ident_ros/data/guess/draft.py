@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A guess of what the columns of a table are, while it is made."""
 
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 from dataclasses import dataclass, field
 import re
 
@@ -102,12 +102,13 @@ class Draft:
         if role and role not in self.guess.roles:
             self.guess.roles.append(role)
 
-    def unit_of(self, names: Sequence[str], known: Sequence[str]) -> str:
+    def unit_of(self, names: Sequence[str], known: Container[str]) -> str:
         """Return the one unit that the names of columns say, '' for none or one not known."""
         units = {self.units[name] for name in names}
         units = {{'deg': 'deg/s', 'rad': 'rad/s'}.get(one, one) if 'deg/s' in known else one
                  for one in units}
-        return units.pop() if len(units) == 1 and units <= set(known) else ''
+        unit = units.pop() if len(units) == 1 else ''
+        return unit if unit in known else ''
 
     def one(self, pattern: str) -> str | None:
         """Return the column of a pattern; the one of the shortest name where that is clear."""

@@ -11,7 +11,7 @@ from quad_ident_ros.data.columns import FORCE, POSITION, RATE, VELOCITY
 from quad_ident_ros.data.guess.draft import Draft, together
 from quad_ident_ros.data.guess.names import TURNING, WORLD
 from quad_ident_ros.data.guess.series import ratio_of, unit_length
-from quad_ident_ros.data.mapping import factor_of
+from quad_ident_ros.data.mapping import factor_of, UNITS
 from quad_ident_ros.gravity import GRAVITY
 from quad_ident_ros.model.attitude import rotate
 
@@ -39,7 +39,7 @@ def positions(draft: Draft) -> None:
     names = draft.found[POSITION]
     if names is None or any(name not in draft.free for name in names):
         return
-    unit = draft.unit_of(names, ('m', 'mm', 'cm'))
+    unit = draft.unit_of(names, UNITS['m'])
     if not unit and draft.t is not None:
         with np.errstate(all='ignore'):
             speed = np.linalg.norm(np.diff(draft.values(names), axis=0), axis=1) / draft.dt()
@@ -108,7 +108,7 @@ def velocities(draft: Draft) -> None:
     if names is None or any(name not in draft.free for name in names):
         return
     values = draft.values(names)
-    unit = draft.unit_of(names, ('m/s', 'mm/s', 'cm/s'))
+    unit = draft.unit_of(names, UNITS['m/s'])
     if not unit:
         fast = float(np.nanquantile(np.abs(values), 0.9))
         place = draft.columns['px'].unit if 'px' in draft.columns else ''
@@ -129,7 +129,7 @@ def _by_velocity(draft: Draft, names: Sequence[str]) -> str:
     given = draft.found[VELOCITY]
     if given is None:
         return ''
-    said = draft.unit_of(given, ('m/s', 'mm/s', 'cm/s'))
+    said = draft.unit_of(given, UNITS['m/s'])
     if not said and np.nanquantile(np.abs(draft.values(given)), 0.9) > QUICK:
         return ''       # it is in mm or cm, and so is the position
     said = said or 'm/s'

@@ -24,7 +24,7 @@ from quad_ident_ros.data.record import INPUTS
 from quad_ident_ros.data.signal_kind import kinds_of, TITLES
 
 AROUND = (1, -1), (-1, -1), (-1, 1), (1, 1)     # forward, left: front right to front left
-SPEEDS = 'rad/s', 'rpm', 'krpm'
+SPEEDS = 'rad/s', 'rpm', 'krpm', 'Hz'
 SLOWEST = 20.0          # rad/s: no rotor that flies turns more slowly
 FEWEST, MOST = 3, 12    # motors
 CELLS = 2.0, 100.0      # V: one cell that is empty, to over 20 in series; more is in mV
@@ -72,7 +72,7 @@ def motors(draft: Draft) -> None:
 def battery(draft: Draft) -> None:
     """Take the voltage of the battery."""
     name = draft.one(BATTERY.pattern)
-    if name is None:
+    if name is None or draft.units[name] == '%':     # of its charge
         return
     usual = float(np.nanmedian(draft.table.columns[name]))
     unit = 'mV' if usual > 1000 else 'V'

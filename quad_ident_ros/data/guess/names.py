@@ -9,15 +9,17 @@ from quad_ident_ros.data.guess.words import in_english, without_accents
 from quad_ident_ros.data.record import QUATERNION
 
 UNIT = re.compile(r'[\[(]\s*([^\])]*)\s*[\])]\s*$')
-ENDING = re.compile(r'_(ns|us|usec|ms|msec|s|sec|secs|seconds|mm|cm|m|deg|rad|dps|radps|rpm|krpm|'
-                    r'g|mv|v)$')
+ENDING = re.compile(r'_(ns|us|usec|ms|msec|s|sec|secs|seconds|mm|cm|m|ft|deg|rad|mrad|dps|radps|'
+                    r'rpm|krpm|hz|g|mv|v)$')
 UNITS = {'usec': 'us', 'µs': 'us', 'msec': 'ms', 'sec': 's', 'secs': 's', 'seconds': 's',
          'dps': 'deg/s', '°/s': 'deg/s', 'degps': 'deg/s', 'radps': 'rad/s', '°': 'deg',
          'degrees': 'deg', 'radians': 'rad', 'm/s2': 'm/s^2', 'm/s²': 'm/s^2', 'm/s/s': 'm/s^2',
          'rad s^-1': 'rad/s', 'm s^-1': 'm/s', 'm s^-2': 'm/s^2', 'meters': 'm', 'volt': 'V',
          'v': 'V', 'mv': 'mV', "g's": 'g',
          'u/min': 'rpm', 'tr/min': 'rpm', '1/min': 'rpm', 'min^-1': 'rpm', 'grad': 'deg',
-         'grad/s': 'deg/s', 'sekunden': 's'}
+         'grad/s': 'deg/s', 'sekunden': 's', 'minutes': 'min', 'feet': 'ft', 'fps': 'ft/s',
+         'kmh': 'km/h', 'kph': 'km/h', 'mi/h': 'mph', 'kt': 'kn', 'knots': 'kn',
+         'hz': 'Hz', 'rps': 'Hz', 'rev/s': 'Hz', 'u/s': 'Hz', 'tr/s': 'Hz'}
 NOT = re.compile(r'(^|_)(sp|setpoint|des|desired|ref|reference|target|goal|cov|covariance|var|'
                  r'std|err|error|raw|bias|offset|mag)(_|$)|^b_[awg]_')
 """Of names that are not what was measured; b_w and b_a are biases."""

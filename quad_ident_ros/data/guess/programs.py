@@ -37,6 +37,29 @@ def vicon(draft: Draft) -> None:
         'rotation as a quaternion, which has RW beside them')
 
 
+def qualisys(draft: Draft) -> None:
+    """
+    Doubt the angles in a table of Qualisys, and name its position, which has the body's before X.
+
+    They are turns about x, then the new y, then the new z, or as the program is set.
+    Source: Qualisys Track Manager, export of bodies as TSV, rotation angles in QTM.
+    """
+    columns = {plain: name for name, plain in draft.names.items()}
+    angles = [columns.get(name, '') for name in ('roll', 'pitch', 'yaw')]
+    if 'residual' not in columns or '' in angles:
+        return
+    order = list(draft.names)
+    before = order[order.index(columns['y']) - 1] if {'y', 'z'} <= set(columns) else ''
+    if before and draft.names[before].endswith('_x'):
+        draft.names[before] = 'x'
+    draft.taken(angles, '')
+    if not {f'q{letter}' for letter in 'wxyz'} <= set(columns):
+        draft.guess.doubts.append(
+            f'attitude: {together(angles)} of Qualisys are turns about x, y and z in this order, '
+            'not yaw, pitch and roll, or as QTM is set; add columns qw, qx, qy, qz, of the '
+            'rotation matrix Rot[0] to Rot[8]')
+
+
 def blackbox_decode(draft: Draft) -> None:
     """
     Take the columns of a CSV that blackbox_decode makes of a log of Betaflight.

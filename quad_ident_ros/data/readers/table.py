@@ -6,10 +6,12 @@ from dataclasses import replace
 from functools import partial
 import gzip
 from pathlib import Path
+from typing import Any
 import zlib
 
 import numpy as np
 
+from quad_ident_ros.data.by_vehicle import by_vehicle
 from quad_ident_ros.data.columns import record_of
 from quad_ident_ros.data.csv import read_csv
 from quad_ident_ros.data.guess import Guess, guess
@@ -49,13 +51,20 @@ def records_from(path: Path, table: Table, mapping: Mapping | None) -> list[Flig
     """
     Return the flight records of a Table, by the columns of a mapping or by guess.
 
-    One for each recording in it, where the time restarts.
+    One for each vehicle, and each recording in it, where the time restarts.
     """
     mapping = mapping or Mapping()
     if mapping.topics or mapping.instances:
         raise InputError(f'{path}: topics and instances are for bags and logs; a mapping of a '
                          'table has columns: which column of the file is what')
-    notes, about = [], {}
+    return [record for name, part in by_vehicle(table).items()
+            for record in _of_vehicle(path, part, mapping, name)]
+
+
+def _of_vehicle(path: Path, table: Table, mapping: Mapping, name: str) -> list[FlightRecord]:
+    """Return the flight records of one vehicle; name: '' where it is the only one."""
+    notes: list[str] = []
+    about: dict[str, Any] = {}
     if not mapping.columns:
         found = guess(table, mapping)
         if found.doubts:
@@ -66,11 +75,15 @@ def records_from(path: Path, table: Table, mapping: Mapping | None) -> list[Flig
                  *found.said]
     parts = _recordings(path, table, mapping)
     records = [record_of(path, part, mapping, notes) for part in parts]
+    if name:
+        about |= {'name': f'{records[0].info["name"]}_{name}', 'source': f'{path}, {name}',
+                  'hardware': {'vehicle': name}}
     records = [replace(record, info={**record.info, **about}) for record in records]
     if len(records) == 1:
         return records
     return [replace(record, info={
-        **record.info, 'name': f'{record.info["name"]}_{k}', 'source': f'{path}, recording {k}',
+        **record.info, 'name': f'{record.info["name"]}_{k}',
+        'source': f'{record.info["source"]}, recording {k}',
         'notes': [*record.info['notes'], f'the time restarts in the table: this is recording '
                                          f'{k} of {len(records)}']})
             for k, record in enumerate(records, 1)]
@@ -110,9 +123,12 @@ def is_record(path: Path) -> bool:
         return True
     # Names of others beside t, or ours: theirs if they say more about a flight than ours do.
     try:
-        found = guess(read_text(path))
+        table = read_text(path)
     except InputError:
         return True
+    if len(by_vehicle(table)) > 1:
+        return False
+    found = guess(table)
     theirs = {_group(name) for name in found.mapping.columns} - {''}
     if theirs <= ours or found.doubts and not (theirs - ours) & {'pose', 'attitude'}:
         return True
@@ -152,19 +168,25 @@ def contents(path: Path) -> list[Content]:
 
 
 def contents_of_table(table: Table, kind: str) -> list[Content]:
-    """Return the one stream of a Table of others."""
+    """Return the streams of a Table of others, one for each vehicle."""
+    return [_stream(part, kind, f'rows of {name}' if name else 'rows')
+            for name, part in by_vehicle(table).items()]
+
+
+def _stream(table: Table, kind: str, name: str) -> Content:
+    """Return the one stream of a Table of one vehicle."""
     found = guess(table)
     time = found.mapping.columns.get('t')
     count = len(next(iter(table.columns.values())))
     if time is None:
-        return [Content('rows', kind, count, 0.0, 0.0, 0.0, tuple(table.columns),
-                        tuple(found.roles))]
+        return Content(name, kind, count, 0.0, 0.0, 0.0, tuple(table.columns),
+                       tuple(found.roles))
     t = table.columns[time.names[0]] * factor_of('t', time.unit)
     t = t[np.isfinite(t)]
     t = t[np.abs(t - t[0]) < 1e8]
     stamps = np.round((t - t[0]) * 1e9).astype(np.int64)
-    made = content_of('rows', kind, stamps, 0, tuple(table.columns), tuple(found.roles))
-    return [replace(made, samples=count)]
+    made = content_of(name, kind, stamps, 0, tuple(table.columns), tuple(found.roles))
+    return replace(made, samples=count)
 
 
 def _doubtful(path: Path, table: Table, found: Guess) -> str:

@@ -54,6 +54,14 @@ def test_a_log_gives_the_flight_in_enu_and_flu(tmp_path):
     assert 'MOT_THST_EXPO 0.65' in notes
 
 
+def test_speeds_of_rotors_that_turn_in_reverse_have_no_sign(tmp_path):
+    """DroneCAN reports them below zero, and they were refused."""
+    messages = [(name, (*values[:2], -values[2], *values[3:])) if name == 'ESC' and values[1] % 2
+                else (name, values) for name, values in copter(SMALL, OUTPUTS)]
+    read = load(file(tmp_path, messages), PWM, VEHICLE)
+    np.testing.assert_allclose(read.stack(*ROTORS), SMALL.stack(*CMD), rtol=1e-6)
+
+
 def test_the_parameters_tell_which_output_is_which_motor(tmp_path):
     read = load(file(tmp_path, copter(SMALL, OUTPUTS, channels=(4, 2, 8, 1))))
     np.testing.assert_array_equal(read.stack('output1', 'output2', 'output3', 'output4'),

@@ -152,8 +152,10 @@ def test_a_definition_of_another_length_is_said(tmp_path):
     refused(path, 'no definition', 'VehicleAttitude', 'none that ships')
 
 
-def test_measured_speeds_become_rotor_speeds(tmp_path):
-    rpm = np.round(SPEEDS * 60 / (2 * np.pi)).astype(int)
+@pytest.mark.parametrize('signs', [(1, 1, 1, 1), (1, -1, 1, -1)], ids=['none', 'in reverse'])
+def test_measured_speeds_become_rotor_speeds(tmp_path, signs):
+    """MAVLink has those of rotors that turn in reverse below zero."""
+    rpm = np.round(SPEEDS * 60 / (2 * np.pi)).astype(int) * signs
     for write in (write2, write_old):
         read = load(write(tmp_path / write.__name__, [*odometry(SMALL), *esc_status(SMALL, rpm)]))
         np.testing.assert_allclose(read.stack('rotor1', 'rotor4'), SPEEDS[:, [0, 3]], atol=0.06)

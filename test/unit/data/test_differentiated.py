@@ -10,10 +10,13 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from quad_ident_ros.data.differentiated import DIFFERENTIATED, missing_motion, with_motion
-from quad_ident_ros.data.quality import cautions, findings
+from quad_ident_ros.data.quality import cautions, findings, refuse_unfit
+from quad_ident_ros.data.summary import summarise
 from quad_ident_ros.diagnose.diagnosis import diagnose
+from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import SENSORS
+from quad_ident_ros.model.attitude import product
 
 P, Q = ('px', 'py', 'pz'), ('qw', 'qx', 'qy', 'qz')
 V, W = ('vx', 'vy', 'vz'), ('wx', 'wy', 'wz')
@@ -78,6 +81,19 @@ def with_slopes(record, velocity, rate):
     """Return a record with other velocities and rates."""
     return changed(record, **dict(zip(V, velocity.T, strict=True)),
                    **dict(zip(W, rate.T, strict=True)))
+
+
+def test_info_finds_what_a_diagnosis_refuses_in_place_of_differences():
+    """The noise of the differences hides it, and info had no error."""
+    record = changed(flight(seconds=12.0, noise=10.0), ax=None, ay=None, az=None)
+    record = with_slopes(record, *differences(record, 'last'))
+    q = product(np.array([np.cos(1.1), 0.0, 0.0, np.sin(1.1)]), record.stack(*Q))
+    turned = changed(record, **dict(zip(Q, q.T, strict=True)))
+    told = [found['code'] for found in summarise(turned, VEHICLE)['findings']
+            if found['severity'] == 'error']
+    with pytest.raises(InputError, match='velocity and thrust agree only if'):
+        refuse_unfit(with_motion(turned), VEHICLE)
+    assert told == ['heading']
 
 
 @pytest.mark.parametrize('kind', ['next', 'last', 'both'])

@@ -76,6 +76,36 @@ def test_units_are_told_by_names_and_values(tmp_path):
         assert text in said(read), text
 
 
+@pytest.mark.parametrize('group, names, unit, factor', [
+    (PLACE, ('x', 'y', 'z'), 'ft', 0.3048), (PLACE, ('x', 'y', 'z'), 'feet', 0.3048),
+    (SPEED, ('vel_x', 'vel_y', 'vel_z'), 'km/h', 1 / 3.6),
+    (SPEED, ('vel_x', 'vel_y', 'vel_z'), 'ft/s', 0.3048),
+    (SPEED, ('vel_x', 'vel_y', 'vel_z'), 'MPH', 0.44704),
+    (SPEED, ('vel_x', 'vel_y', 'vel_z'), 'kt', 1852 / 3600),
+    (RATE, ('gyro_x', 'gyro_y', 'gyro_z'), 'mrad/s', 1e-3)])
+def test_a_unit_in_the_name_is_read_though_it_is_no_usual_one(tmp_path, group, names, unit,
+                                                             factor):
+    """Feet were read as metres without a word, a factor that no check can tell."""
+    columns = {'t [min]': FLIGHT.t / 60, **named(EVERY, FLIGHT.stack(*EVERY))}
+    columns = {name: values for name, values in columns.items() if name not in group}
+    columns |= named([f'{name} [{unit}]' for name in names], FLIGHT.stack(*group) / factor)
+    close(load(table(tmp_path, columns)))
+
+
+def test_angles_and_rotor_speeds_have_the_unit_of_their_names_and_a_charge_is_no_voltage(tmp_path):
+    measured = [f'rotor_speed_{k} [Hz]' for k in range(1, 5)]
+    columns = {'t': FLIGHT.t, **named(PLACE, FLIGHT.stack(*PLACE)),
+               **named([f'{name} [mrad]' for name in ('roll', 'pitch', 'yaw')],
+                       1e3 * FLIGHT.euler()),
+               **named(measured, FLIGHT.stack(*CMD) / (2 * np.pi)),
+               'battery [%]': 95.0 - FLIGHT.t}
+    read = load(table(tmp_path, columns))
+    close(read, names=(*PLACE, *Q))
+    rotors = read.stack('rotor1', 'rotor2', 'rotor3', 'rotor4')
+    np.testing.assert_allclose(rotors, FLIGHT.stack(*CMD), rtol=1e-9)
+    assert not read.has('vbat')
+
+
 @pytest.mark.parametrize('separator, comma', [(';', True), (';', False), ('\t', False),
                                               ('\t', True)])
 def test_separators_and_decimal_commas(tmp_path, separator, comma):

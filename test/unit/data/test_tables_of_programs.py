@@ -442,6 +442,20 @@ def test_a_rotation_of_vicon_that_is_no_quaternion_is_asked_for(tmp_path):
     refused(path, 'RX, RY, RZ are angles or a rotation vector', 'quaternion')
 
 
+def test_angles_of_qualisys_are_no_yaw_pitch_and_roll(tmp_path):
+    """They are turns in the other order; heads that turn would be tilted, without a word."""
+    above = f'NO_OF_FRAMES\t{len(T)}\nFREQUENCY\t100\nDATA_INCLUDED\t6D\nBODY_NAMES\tquad\n'
+    place = named(('quad X', 'Y', 'Z'), 1000.0 * FLIGHT.stack(*PLACE))
+    angles = named(('Roll', 'Pitch', 'Yaw'), np.degrees(FLIGHT.euler()))
+    frames = {'Frame': 1.0 + np.arange(len(T)), 'Time': T, **place}
+    rest = {**angles, 'Residual': np.full(len(T), 0.3)}
+    refused(table(tmp_path, {**frames, **rest}, 'body.tsv', '\t', above=above),
+            'Roll, Pitch, Yaw of Qualisys are turns about x, y and z', 'px: {column: "quad X"')
+    turned = named(('qw', 'qx', 'qy', 'qz'), FLIGHT.stack(*Q))
+    same(load(table(tmp_path, {**frames, **rest, **turned}, 'body.tsv', '\t', above=above)),
+         PLACE, Q)
+
+
 def test_frames_at_a_rate_that_is_not_said_are_asked_for_and_mapped(tmp_path):
     named_columns = {'Frame': 7 + np.arange(len(T)), **columns('p_', 'xyz', PLACE),
                      **columns('q', 'wxyz', Q)}
