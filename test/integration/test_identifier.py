@@ -357,6 +357,16 @@ def test_data_without_excitation_are_an_error(bench):
     assert not bench.json
 
 
+def test_a_record_with_a_gap_names_a_parameter_and_no_option(bench, hover):
+    bench = bench({'method': 'ls'})
+    record = hover[0]
+    late = np.where(np.arange(len(record)) < len(record) // 2, 0.0, 5.0)
+    bench.feed([FlightRecord(record.t + late, record.columns, {**record.info, 'run_count': 1})])
+    bench.await_status(DiagnosticStatus.ERROR, 'the record has a gap of 5', 'leave out what is '
+                       'before it: set the parameter window to the seconds at the end')
+    assert not [one for one in bench.diagnostics if '--' in one.status[0].message]
+
+
 def broken_messages():
     """Make messages that are no records, and one that looks like one but cannot be fitted."""
     good = flights()[0]
