@@ -123,14 +123,14 @@ def test_all_topics_of_a_mapping_with_unknown_types_are_named(graph, domain, tmp
                                      graph.probe.get_topic_names_and_types()
                                      if name in ('/one', '/two')), 'both types of each')
         graph.start(Recorder, arguments=('-p', f'mapping:={path}'))
-        said = ''
+        said = []
 
-        def is_said():
-            nonlocal said
-            said += ''.join(capfd.readouterr())
-            return '/one: has several types' in said and '/two: has several types' in said
+        def told():
+            said.extend(line for line in capfd.readouterr().err.splitlines() if 'several' in line)
+            return said
 
-        graph.spin_until(is_said, 'both topics')
+        assert all(f'{topic}: has several types' in graph.spin_until(told, 'the error')[0]
+                   for topic in ('/one', '/two'))
     finally:
         vehicle.close()
 
