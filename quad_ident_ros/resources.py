@@ -15,6 +15,7 @@ from quad_ident_ros.errors import InputError
 PACKAGE = 'quad_ident_ros'
 MOST_BYTES = 2 ** 18        # of a YAML file, thirty times the longest of those that ship
 MOST_VALUES = 20_000        # in it, each counted as often as an alias repeats it
+EMPTY = 'the file is empty; save or copy it again'
 MOST_BITS = 64              # of a whole number: stamps and seeds have no more
 
 
@@ -134,12 +135,15 @@ class _Loader(yaml.SafeLoader):
 
 
 def _text_of(path):
-    """Return the text of a file; raises InputError for a device, a pipe and one too long."""
-    mode = Path(path).stat().st_mode
+    """Return the text of a file; raises InputError for a device, a pipe, and by its size."""
+    about = Path(path).stat()
+    mode = about.st_mode
     if stat.S_ISCHR(mode) or stat.S_ISBLK(mode):
         raise InputError(f'{path}: this is a device; name a file')
     if stat.S_ISFIFO(mode):     # opening it may wait for ever, and it is read more than once
         raise InputError(f'{path}: this is a pipe; save it to a file and name that')
+    if stat.S_ISREG(mode) and not about.st_size:    # /proc/kmsg, too: reading it waits for ever
+        raise InputError(f'{path}: {EMPTY}')
     with open(path, 'rb') as file:
         data = file.read(MOST_BYTES + 1)
     what = kind_of(path) if len(data) > MOST_BYTES else ''

@@ -75,10 +75,10 @@ def reader_of(path: Path) -> Reader:
     start = b''
     try:
         if path.is_file():
+            if not path.stat().st_size:     # of /proc/kmsg, too, in which reading may wait
+                raise InputError(f'{path}: the file is empty; copy it again, or record again')
             with open(path, 'rb') as file:
                 start = file.read(START)
-            if not start:
-                raise InputError(f'{path}: the file is empty; copy it again, or record again')
     except OSError as error:
         raise InputError(f'{path}: cannot be read: {error.strerror}') from None
     refuse_others(path, start)

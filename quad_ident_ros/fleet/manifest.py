@@ -80,6 +80,8 @@ def is_manifest(path: Path) -> bool:
     if path.suffix != '.csv':
         return False
     try:
+        if not path.stat().st_size:     # reading such a file of the system may wait for ever
+            return False
         # In another encoding, too: that is said of a manifest, where a flight would be refused.
         with open(path, encoding='utf-8-sig', errors='replace', newline='') as file:
             names = re.split('[,;\t]', file.readline(START).lower())
@@ -204,7 +206,7 @@ def _is_flight(path: Path) -> bool:
         return not is_manifest(path)
     try:
         with open(path, 'rb') as file:
-            start = file.read(START)
+            start = file.read(START) if path.stat().st_size else b''
     except OSError:
         return True     # it is refused with its reason later
     *others, _ = READERS    # the last one takes any text

@@ -21,6 +21,7 @@ from quad_ident_ros.nodes.messages import ERROR, OK, table_message, WARN
 from quad_ident_ros.nodes.parameters import help_text, ParameterSpec
 from quad_ident_ros.nodes.qos import latched
 from quad_ident_ros.nodes.record_worker import RecordWorker, Words
+from quad_ident_ros.nodes.remedies import for_a_node
 from quad_ident_ros.nodes.stamped import StampedGap
 from quad_ident_ros.report.verdict import closed_of, verdict_line
 from quad_ident_ros.tolerances import EXAMPLE, rules_from
@@ -120,7 +121,7 @@ class Diagnoser(RecordWorker):
                     + round(1e9 * (flights[-1].t[-1] - flights[-1].t[0])))]
         data = {**found.as_data(), 'time': datetime.now(timezone.utc).isoformat(), 'span_ns': span,
                 'dropped_samples': sum(flight.info.get('dropped', 0) for flight in flights)}
-        self._json.publish(String(data=json.dumps(data)))
+        self._json.publish(String(data=for_a_node(json.dumps(data))))
         gap = found.gap
         self._gap.publish(table_message([[stage[name] for stage in (gap.before, gap.after,
                                                                     gap.noise)]

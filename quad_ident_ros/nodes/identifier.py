@@ -131,19 +131,22 @@ class Identifier(RecordWorker):
         """Return the fit of the records as they are now."""
         values = self._config.values()
         run = self._tracker.update if self._continuous else identify
-        records, settings = self._taken(), _settings(values)
-        if values['vehicle']:
-            vehicle = load_any_vehicle(values['vehicle'])
-            records = [with_inputs(record, vehicle) for record in records]
-        window, order = values['window'], list(settings.methods)
-
-        def on_progress(method, output, share):
-            done = ((OUTPUTS.index(output) + share) / len(OUTPUTS) if output in OUTPUTS
-                    else share)
-            self._job.tell((order.index(method) + done) / len(order), method=method,
-                           output=output)
+        given, window = self._taken(), values['window']
 
         def fit():
+            # In here an error, such as that of a vehicle file that is gone by now, ends no node.
+            records, settings = given, _settings(values)
+            order = list(settings.methods)
+            if values['vehicle']:
+                vehicle = load_any_vehicle(values['vehicle'])
+                records = [with_inputs(record, vehicle) for record in records]
+
+            def on_progress(method, output, share):
+                done = ((OUTPUTS.index(output) + share) / len(OUTPUTS) if output in OUTPUTS
+                        else share)
+                self._job.tell((order.index(method) + done) / len(order), method=method,
+                               output=output)
+
             result = run([record.last(window) if window else record for record in records],
                          settings, on_progress=on_progress)
             return replace(result, settings={**result.settings, 'window': window,

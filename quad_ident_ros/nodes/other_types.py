@@ -10,18 +10,20 @@ BY_NAME = {'nav_msgs/msg/Odometry': 'odometry', 'sensor_msgs/msg/Imu': 'imu',
            'actuator_msgs/msg/Actuators': 'actuators'}
 
 
-def other_type(node, name):
+def other_types(node, names):
     """
-    Say what is published on one of FLIGHT_TOPICS in place of its type, or return ''.
+    Say which of FLIGHT_TOPICS are published as other types than theirs, or return ''.
 
     A subscription of another type hears nothing, and the middleware does not say so.
     """
-    wanted, topic = FLIGHT_TOPICS[name].type, node.resolve_topic_name(name)
-    kinds = {info.topic_type for info in node.get_publishers_info_by_topic(topic)}
-    if not kinds or wanted in kinds:
-        return ''
-    kind = min(kinds)
-    return f'{name}: {topic} is {kind}, not {wanted}; {way_out(topic, kind)}'
+    found, kinds = [], {}
+    for name in names:
+        wanted, topic = FLIGHT_TOPICS[name].type, node.resolve_topic_name(name)
+        there = {info.topic_type for info in node.get_publishers_info_by_topic(topic)}
+        if there and wanted not in there:
+            kinds[topic] = min(there)
+            found.append(f'{name}: {topic} is {kinds[topic]}, not {wanted}')
+    return '; '.join([*found, way_out(kinds)]) if found else ''
 
 
 def one_topic_for_two(node, name, names):
@@ -32,15 +34,19 @@ def one_topic_for_two(node, name, names):
         return ''
     both = ' and '.join(f'{one} ({FLIGHT_TOPICS[one].type})' for one in same)
     return (f'{topic} cannot be both {both}: a topic has one type; '
-            f'{way_out(topic, "nav_msgs/msg/Odometry")}')
+            f'{way_out({topic: "nav_msgs/msg/Odometry"})}')
 
 
-def way_out(topic, kind):
-    """Return how a topic of some type is recorded."""
-    known = BY_NAME.get(kind)
-    assert known is None or known in KNOWN
-    roles = ', '.join(f'{role}: {{topic: {topic}}}' for role in ROLES_OF.get(kind, ()))
-    lines = f'with topics: {{{roles}}} in it' if roles else 'that says where in it what is'
-    by_name = f'start the recorder with -p topics:="[{known}]" -r {known}:={topic}, or ' \
+def way_out(kinds):
+    """Return how topics of some types, {topic: type}, are recorded."""
+    # One topic for each: of two that have the same, the second one is nothing new.
+    roles = {role: topic for topic, kind in reversed(kinds.items())
+             for role in ROLES_OF.get(kind, ())}
+    known = {BY_NAME[kind]: topic for topic, kind in reversed(kinds.items()) if kind in BY_NAME}
+    assert known.keys() <= KNOWN.keys()
+    listed = ', '.join(f'{role}: {{topic: {topic}}}' for role, topic in roles.items())
+    lines = f'with topics: {{{listed}}} in it' if roles else 'that says where in it what is'
+    remapped = ' '.join(f'-r {name}:={topic}' for name, topic in known.items())
+    by_name = f'start the recorder with -p topics:="[{", ".join(known)}]" {remapped}, or ' \
         if known else ''
     return f'{by_name}give it a mapping file (parameter mapping, docs/records.md) {lines}'

@@ -64,6 +64,8 @@ def run(node_class, help_page, args=None, executor_class=SingleThreadedExecutor,
 
 def _plain_arguments(args):
     """Return the words that are not for ROS; raises InputError for ROS arguments that fail."""
+    for path in _parameter_files(args):     # before ROS 2 reads them, which may wait for ever
+        resources.read_yaml(path)
     try:
         return remove_ros_args(args)[1:]
     except Exception as error:
@@ -184,11 +186,14 @@ def ensure_log_folder():
             os.environ['ROS_LOG_DIR'] = tempfile.mkdtemp(prefix='quad_ident_ros_log_')
 
 
+def _parameter_files(args):
+    return [args[i + 1] for i, word in enumerate(args[:-1]) if word == '--params-file']
+
+
 def _check_parameter_files(args, node):
     """Raise InputError for a parameter file that says nothing to this node: ROS 2 is silent."""
-    files = [args[i + 1] for i, word in enumerate(args[:-1]) if word == '--params-file']
     full_name = node.get_fully_qualified_name()
-    for path in files:
+    for path in _parameter_files(args):
         keys = names_in(resources.read_yaml(path))
         if not is_for(keys, node.get_name(), full_name):
             raise InputError(f'{path}: nothing in it is for this node, {full_name}; it is for '

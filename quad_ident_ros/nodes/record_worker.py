@@ -17,6 +17,7 @@ from quad_ident_ros.nodes.node import PackageNode
 from quad_ident_ros.nodes.parameters import NodeParameters
 from quad_ident_ros.nodes.qos import latched
 from quad_ident_ros.nodes.records import Records
+from quad_ident_ros.nodes.remedies import for_a_node
 
 NEWS = 10.0     # s between two lines of log on records that are left aside, windows come fast
 LATEST = 2 ** 31 - 1     # s of a stamp of ROS, of 1970: results have that of the last sample
@@ -136,8 +137,8 @@ class RecordWorker(PackageNode):
             self._status = (WARN, f'the {self._words.noun} was cancelled', {})
             self.get_logger().warning(self._status[1])
         elif isinstance(outcome, InputError):
-            self._status = (ERROR, str(outcome), {})
-            self.get_logger().error(str(outcome))
+            self._status = (ERROR, for_a_node(str(outcome)), {})
+            self.get_logger().error(self._status[1])
         else:
             self._publish(outcome)
         self._publish_status()

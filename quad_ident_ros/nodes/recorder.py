@@ -183,23 +183,24 @@ class Recorder(PackageNode):
         missing = [name for name in self._mapped.topics if name not in self._types]
         if not missing:
             return
-        there = dict(self.get_topic_names_and_types())
+        there, wrong = dict(self.get_topic_names_and_types()), []
         for name in missing:
             kinds = there.get(self.resolve_topic_name(name), ())
             if len(kinds) > 1:
-                self.get_logger().error(f'{name}: has several types ({", ".join(kinds)}); '
-                                        'publish one', throttle_duration_sec=10.0)
+                wrong.append(f'{name}: has several types ({", ".join(kinds)}); publish one')
             elif kinds:
                 try:
                     message_class(kinds[0])
                 except InputError as error:
-                    self.get_logger().error(f'{name}: {error}', throttle_duration_sec=10.0)
+                    wrong.append(f'{name}: {error}')
                     continue
                 self._types[name] = kinds[0]
                 self._subscribe(name)
                 if beside := self._mapped.beside(name, kinds[0]):
                     self._types[beside] = kinds[0]
                     self._subscribe(beside, KEPT)
+        if wrong:       # in one line: of several, the throttle would leave the first one only
+            self.get_logger().error('; '.join(wrong), throttle_duration_sec=10.0)
         if self._config['output'] and all(name in self._types for name in self._mapped.topics):
             self._open_recording()
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Why a recorder joins no rows: what does not come, or as another type, or at other times."""
 
-from quad_ident_ros.nodes.other_types import other_type
+from quad_ident_ros.nodes.other_types import other_types
 
 AWAITED = 5.0        # s for a vehicle to begin, after which missing topics are reported
 OTHER_CLOCK = 1.0    # s by which stamps are of another clock, as data.foreign has it for bags
@@ -56,10 +56,10 @@ class Unjoined:
                 '(parameter gap)')
 
     def another_type(self):
-        """Say which silent topic is of another type, or return None."""
+        """Say which silent topics are of other types, or return ''."""
         silent = () if self._mapped is not None else (
             name for name in self._topics if not self._joiner.counts.received[name])
-        return next(filter(None, (other_type(self._node, name) for name in silent)), None)
+        return other_types(self._node, silent)
 
     def awaited(self, now):
         """Return, once, that no topic of the mapping exists, or ''."""

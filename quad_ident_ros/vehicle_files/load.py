@@ -8,6 +8,7 @@ import os
 from pathlib import Path
 from typing import Any
 
+from quad_ident_ros import resources
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model import vehicle as model
 from quad_ident_ros.model.vehicle import Vehicle
@@ -34,7 +35,7 @@ def load_any_vehicle(name_or_path: str | Path) -> Vehicle:
 def read_vehicle(source: Source, supplied: Mapping[str, Any] | None = None) -> Reading:
     """Return the Reading of a file of a simulator; see reading.finished. Raises InputError."""
     if not source.text.strip():
-        raise InputError(f'{source.path}: the file is empty; save or copy it again')
+        raise InputError(f'{source.path}: {resources.EMPTY}')
     kind = kind_of(source.text)
     if kind is None:
         raise InputError(f'{source.path}: this kind of vehicle file is not known; give '

@@ -42,8 +42,11 @@ def is_file(path: str | Path) -> bool:
 def text_of(path: str | Path) -> str:
     """Return the text of a file; InputError for what is not text."""
     try:
-        if not stat.S_ISREG(Path(path).stat().st_mode):
+        about = Path(path).stat()
+        if not stat.S_ISREG(about.st_mode):
             raise InputError(f'{path}: this is not a file; name one')
+        if not about.st_size:
+            raise InputError(f'{path}: {resources.EMPTY}')
         with open(path, 'rb') as file:
             data = file.read(MOST_BYTES + 1)
     except OSError as error:

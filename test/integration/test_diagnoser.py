@@ -209,6 +209,16 @@ def test_records_that_bear_no_verdict_are_refused_in_one_line(graph, draggy, spo
     assert not bench.diagnoses
 
 
+def test_a_fault_of_a_record_names_a_parameter_and_no_option(graph, draggy):
+    bench = Bench(graph, {})
+    good = np.arange(len(draggy[0])) > 100
+    bench.feed([FlightRecord(record.t, {**record.columns, **{
+        name: np.where(good, record.columns[name], 0.0) for name in QUATERNION}}, record.info)
+        for record in draggy])
+    status = bench.await_status(DiagnosticStatus.ERROR, 'leave them out: set the parameter window')
+    assert '--' not in status.message
+
+
 def test_it_ends_while_it_diagnoses(graph, draggy):
     bench = Bench(graph, {})
     bench.feed(draggy)

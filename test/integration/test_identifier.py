@@ -18,7 +18,7 @@ from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.identify.identify import identify, Settings
 from quad_ident_ros.identify.methods import METHODS
 from quad_ident_ros.identify.result import parameter_table
-from quad_ident_ros.model.vehicle import load_vehicle
+from quad_ident_ros.model.vehicle import load_vehicle, write_vehicle
 from quad_ident_ros.nodes.identifier import Identifier
 from quad_ident_ros.nodes.messages import record_message
 from quad_ident_ros.nodes.qos import latched
@@ -355,6 +355,29 @@ def test_data_without_excitation_are_an_error(bench):
         ('u1', 'u2', 'u3', 'u4', 'phi', 'theta', 'psi', 'pz'), 0 * t), {})])
     bench.await_status(DiagnosticStatus.ERROR, 'no input deviates from its trim')
     assert not bench.json
+
+
+def test_a_record_with_a_gap_names_a_parameter_and_no_option(bench, hover):
+    bench = bench({'method': 'ls'})
+    record = hover[0]
+    late = np.where(np.arange(len(record)) < len(record) // 2, 0.0, 5.0)
+    bench.feed([FlightRecord(record.t + late, record.columns, {**record.info, 'run_count': 1})])
+    bench.await_status(DiagnosticStatus.ERROR, 'the record has a gap of 5', 'leave out what is '
+                       'before it: set the parameter window to the seconds at the end')
+    assert not [one for one in bench.diagnostics if '--' in one.status[0].message]
+
+
+def test_a_vehicle_file_that_is_gone_by_now_does_not_end_the_node(bench, hover, tmp_path):
+    """It was there when the parameter was set, and is read again for each fit."""
+    path = tmp_path / 'vehicle.yaml'
+    write_vehicle(path, load_vehicle('paper_quadrotor'))
+    bench = bench({'method': 'ls', 'vehicle': str(path)})
+    path.unlink()
+    bench.feed(hover)
+    bench.await_status(DiagnosticStatus.ERROR, 'vehicle.yaml: there is no such file')
+    bench.graph.set_parameter('identifier', 'vehicle', '')
+    assert bench.graph.trigger('identifier/identify').success
+    assert bench.await_results(1)['methods']
 
 
 def broken_messages():

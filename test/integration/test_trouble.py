@@ -8,7 +8,8 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from graph import Graph, sample, Vehicle, write_experiment
 from nav_msgs.msg import Odometry
 import pytest
-from std_msgs.msg import Float64MultiArray
+from sensor_msgs.msg import Imu
+from std_msgs.msg import Float64MultiArray, String
 
 from quad_ident_ros.data.record import QUATERNION
 from quad_ident_ros.errors import InputError
@@ -84,6 +85,52 @@ def test_odometry_in_the_place_of_a_pose_is_named_and_taken_as_it_says(graph, do
 
             graph.spin_until(joined, 'samples')
             graph.stop(recorder)
+    finally:
+        vehicle.close()
+
+
+def test_all_topics_of_other_types_are_named(graph, domain):
+    vehicle = Graph(domain)
+    try:
+        publishers = [vehicle.probe.create_publisher(kind, topic, LOSSLESS)
+                      for kind, topic in ((Odometry, '/odom'), (Imu, '/imu'))]
+        heard = graph.listen(DiagnosticArray, '/diagnostics', 10)
+        graph.start(Recorder, arguments=('-r', 'pose:=/odom', '-r', 'twist:=/odometry',
+                                         '-r', 'attitude:=/imu'))
+        publishers.append(vehicle.probe.create_publisher(Odometry, '/odometry', LOSSLESS))
+        wrong = ('attitude: /imu is sensor_msgs/msg/Imu, not',
+                 'pose: /odom is nav_msgs/msg/Odometry, not',
+                 'twist: /odometry is nav_msgs/msg/Odometry, not')
+        [status] = graph.spin_until(lambda: [
+            status for message in heard for status in message.status
+            if all(said in status.message for said in wrong)][:1], 'all three')
+        # One way out for all: two mapping files, or odometry of two topics, are none.
+        assert status.message.count('mapping file') == status.message.count('-r odometry:=') == 1
+        assert '-r imu:=/imu' in status.message and 'topics:="[' in status.message
+    finally:
+        vehicle.close()
+
+
+def test_all_topics_of_a_mapping_with_unknown_types_are_named(graph, domain, tmp_path, capfd):
+    path = tmp_path / 'map.yaml'
+    path.write_text('topics: {pose: {topic: /one}, velocity: {topic: /two}}')
+    vehicle = Graph(domain)
+    try:
+        for topic in ('/one', '/two'):
+            graph.probe.create_publisher(String, topic, LOSSLESS)
+            vehicle.probe.create_publisher(Imu, topic, LOSSLESS)
+        graph.spin_until(lambda: all(len(kinds) == 2 for name, kinds in
+                                     graph.probe.get_topic_names_and_types()
+                                     if name in ('/one', '/two')), 'both types of each')
+        graph.start(Recorder, arguments=('-p', f'mapping:={path}'))
+        said = []
+
+        def told():
+            said.extend(line for line in capfd.readouterr().err.splitlines() if 'several' in line)
+            return said
+
+        assert all(f'{topic}: has several types' in graph.spin_until(told, 'the error')[0]
+                   for topic in ('/one', '/two'))
     finally:
         vehicle.close()
 

@@ -133,6 +133,7 @@ def test_what_is_no_file_is_told_and_never_waited_for(tmp_path):
     refused(tmp_path / 'pipe', 'a pipe', 'save it to a file')
     refused('/dev/null', 'a device')
     refused('/dev/zero', 'a device')
+    refused('/proc/self/environ', 'the file is empty')      # as /proc/kmsg: reading it may wait
     refused(tmp_path / 'none.csv', 'no such file')
     (tmp_path / 'gone').symlink_to('nowhere')
     refused(tmp_path / 'gone', 'no such file')

@@ -3,10 +3,13 @@
 """Which flights there are, whose they are, and which are diagnosed together."""
 
 from datetime import datetime, timezone
+import hashlib
 import os
+from pathlib import Path
 
 import pytest
 
+from quad_ident_ros.data.content import sha256_of
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.fleet.dates import date_in, date_in_path, date_of, is_day
 from quad_ident_ros.fleet.manifest import is_manifest, listed
@@ -164,6 +167,15 @@ def test_spaces_beside_commas_and_lines_that_repeat_do_no_harm(tmp_path):
 def test_a_flight_that_is_named_twice_is_one(tmp_path):
     path = write(tmp_path / 'seven' / 'a.csv')
     assert len(listed([str(path), str(tmp_path)])) == 1
+
+
+def test_a_file_of_the_system_without_a_size_is_not_read(tmp_path):
+    """A link to /proc/kmsg was waited for; here a file of its kind that anybody may read."""
+    for name, file in (('flight.csv', 'environ'), ('flight.ulg', 'maps'), ('notes', 'status')):
+        (tmp_path / name).symlink_to(f'/proc/self/{file}')
+    assert sha256_of(tmp_path / 'flight.ulg') == hashlib.sha256().hexdigest()
+    assert not is_manifest(tmp_path / 'flight.csv')
+    assert {Path(one.path).name for one in listed([str(tmp_path)])} == {'flight.csv', 'flight.ulg'}
 
 
 def test_what_is_not_there_is_said(tmp_path):

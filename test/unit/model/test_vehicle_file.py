@@ -16,6 +16,7 @@ from quad_ident_ros import resources
 from quad_ident_ros.data.mapping import load_mapping
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.experiment import load_experiment
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.greybox.parameters import INDEX, limits, NAMES, prior_sizes
 from quad_ident_ros.model.mixing import infeasibility, squared_speeds
@@ -28,6 +29,7 @@ from quad_ident_ros.model.vehicle import (
     vehicle_to_mapping,
     write_vehicle,
 )
+from quad_ident_ros.vehicle_files.load import load_any_vehicle
 
 FAST = settings(deadline=None, max_examples=120,
                 suppress_health_check=[HealthCheck.function_scoped_fixture])
@@ -409,7 +411,7 @@ def test_no_name_is_an_error_of_another_kind(name):
 @pytest.mark.parametrize(('content', 'words'), [
     (b'mass: [1', 'line 1: is not YAML'), (b'a: b: c', 'line 1: is not YAML'),
     (b'\xff\xfe\x00mass', 'this is text in UTF-16'), (b'\xffmass', 'is not text'),
-    (b'', 'expected `key: value` lines'),
+    (b'', 'the file is empty'),
     (b'- 1', 'expected `key: value` lines'), (b'mass: 2001-99-99', 'cannot be read'),
     (b'mass: 0b_', 'cannot be read'), (b'[' * 5000, 'cannot be read'),
     (b'mass: !!int ""', 'cannot be read'), (b'mass: !!python/object:os.system 1', 'is not YAML'),
@@ -452,6 +454,17 @@ def test_a_pipe_is_refused_and_not_waited_for(tmp_path):
     os.mkfifo(tmp_path / 'map.yaml')
     with pytest.raises(InputError, match='this is a pipe; save it to a file'):
         load_mapping(tmp_path / 'map.yaml')
+
+
+def test_a_file_of_the_system_without_a_size_is_not_read(tmp_path):
+    """In /proc/kmsg, of which only root may try that, reading waited for ever."""
+    for read in (load_mapping, load_experiment, load_any_vehicle):
+        with pytest.raises(InputError, match='/proc/self/environ: the file is empty; save'):
+            read('/proc/self/environ')
+    link = tmp_path / 'model.urdf'
+    link.symlink_to('/proc/self/environ')
+    with pytest.raises(InputError, match='model.urdf: the file is empty; save'):
+        load_any_vehicle(link)
 
 
 def test_messages_stay_short_whatever_the_value():
