@@ -200,9 +200,9 @@ def _is_time(cell: str) -> bool:
     return bool(_DATE.match(cell) or _PASSED.match(cell))
 
 
-_UNITS = frozenset('s sec ms us ns min m mm cm ft m/s mm/s cm/s km/h ft/s mph kn rad deg mrad '
-                   'rad/s deg/s dps mrad/s rpm krpm hz g mg m/s2 m/s^2 m/s² v mv us pwm % '
-                   '1 - n'.split())
+_UNITS = frozenset('s sec ms us ns min h m mm cm ft in m/s mm/s cm/s km/h ft/s mph kn rad deg '
+                   'mrad rad/s deg/s dps mrad/s rpm krpm hz g mg m/s2 m/s^2 m/s² cm/s2 cm/s^2 '
+                   'cm/s² mm/s2 mm/s^2 mm/s² v mv pwm % 1 - n'.split())
 
 
 def _is_units(cells: list[str]) -> bool:

@@ -2,14 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """A guess of what the columns of a table are, while it is made."""
 
-from collections.abc import Container, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 import re
 
 import numpy as np
 
 from quad_ident_ros.data.columns import FORCE, VELOCITY
-from quad_ident_ros.data.guess.names import AXES, BARE, NOT, plain, TURNED, UNITS
+from quad_ident_ros.data.guess.names import AXES, BARE, NO_UNITS, NOT, plain, TURNED, UNITS
 from quad_ident_ros.data.guess.series import alike, filled, turned
 from quad_ident_ros.data.mapping import Column, factor_of, Mapping
 from quad_ident_ros.data.tabular import Table
@@ -102,13 +102,23 @@ class Draft:
         if role and role not in self.guess.roles:
             self.guess.roles.append(role)
 
-    def unit_of(self, names: Sequence[str], known: Container[str]) -> str:
+    def unit_of(self, names: Sequence[str], known: Iterable[str]) -> str:
         """Return the one unit that the names of columns say, '' for none or one not known."""
         units = {self.units[name] for name in names}
         units = {{'deg': 'deg/s', 'rad': 'rad/s'}.get(one, one) if 'deg/s' in known else one
                  for one in units}
         unit = units.pop() if len(units) == 1 else ''
         return unit if unit in known else ''
+
+    def said_unit(self, role: str, names: Sequence[str], known: Iterable[str]) -> str:
+        """Return the unit that the names of columns say, '' for none; doubt one not known."""
+        telling = [name for name in names if self.units[name].lower() not in NO_UNITS]
+        unit = self.unit_of(telling, known) if telling else ''
+        if telling and not unit:
+            said = ', '.join(dict.fromkeys(self.units[name][:20] for name in telling))
+            self.guess.doubts.append(f'{role}: the unit of {together(names)}, which say {said}; '
+                                     f'known are {", ".join(known)}, one for all')
+        return unit
 
     def one(self, pattern: str) -> str | None:
         """Return the column of a pattern; the one of the shortest name where that is clear."""

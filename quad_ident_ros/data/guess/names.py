@@ -10,16 +10,26 @@ from quad_ident_ros.data.record import QUATERNION
 
 UNIT = re.compile(r'[\[(]\s*([^\])]*)\s*[\])]\s*$')
 ENDING = re.compile(r'_(ns|us|usec|ms|msec|s|sec|secs|seconds|mm|cm|m|ft|deg|rad|mrad|dps|radps|'
-                    r'rpm|krpm|hz|g|mv|v)$')
+                    r'rpm|krpm|hz|g|mv|v|(?<=time_)min|minutes|(?<=time_)h|hours)$')
 UNITS = {'usec': 'us', 'µs': 'us', 'msec': 'ms', 'sec': 's', 'secs': 's', 'seconds': 's',
          'dps': 'deg/s', '°/s': 'deg/s', 'degps': 'deg/s', 'radps': 'rad/s', '°': 'deg',
-         'degrees': 'deg', 'radians': 'rad', 'm/s2': 'm/s^2', 'm/s²': 'm/s^2', 'm/s/s': 'm/s^2',
-         'rad s^-1': 'rad/s', 'm s^-1': 'm/s', 'm s^-2': 'm/s^2', 'meters': 'm', 'volt': 'V',
+         'degrees': 'deg', 'radians': 'rad', 'rad s^-1': 'rad/s', 'm s^-1': 'm/s',
+         'm s^-2': 'm/s^2', 'millimeters': 'mm', 'centimeters': 'cm', 'meters': 'm',
+         'millimetres': 'mm', 'centimetres': 'cm', 'metres': 'm', 'volt': 'V', 'volts': 'V',
          'v': 'V', 'mv': 'mV', "g's": 'g',
+         **{f'{length}/s{squared}': f'{length}/s^2' for length in ('m', 'cm', 'mm')
+            for squared in ('2', '²', '/s', '**2')},
          'u/min': 'rpm', 'tr/min': 'rpm', '1/min': 'rpm', 'min^-1': 'rpm', 'grad': 'deg',
-         'grad/s': 'deg/s', 'sekunden': 's', 'minutes': 'min', 'feet': 'ft', 'fps': 'ft/s',
-         'kmh': 'km/h', 'kph': 'km/h', 'mi/h': 'mph', 'kt': 'kn', 'knots': 'kn',
+         'grad/s': 'deg/s', 'sekunden': 's', 'minutes': 'min', 'stunden': 'h',
+         'hours': 'h', 'hour': 'h', 'hr': 'h', 'hrs': 'h', 'inch': 'in', 'inches': 'in',
+         'feet': 'ft', 'fps': 'ft/s', 'kmh': 'km/h', 'kph': 'km/h', 'mi/h': 'mph', 'kt': 'kn',
+         'knots': 'kn', 'rev/min': 'rpm', 'r/min': 'rpm',
          'hz': 'Hz', 'rps': 'Hz', 'rev/s': 'Hz', 'u/s': 'Hz', 'tr/s': 'Hz'}
+NO_UNITS = frozenset(('', '-', '1', 'world', 'body', 'global', 'local', 'inertial', 'ned', 'enu',
+                      'frd', 'flu', 'nwu', 'raw', 'filtered', 'estimated', 'measured', 'float',
+                      'float32', 'float64', 'double', 'utc', 'unix', 'epoch', 'gps'))
+"""What stands in brackets behind names, or in a line of units, and is none."""
+
 NOT = re.compile(r'(^|_)(sp|setpoint|des|desired|ref|reference|target|goal|cov|covariance|var|'
                  r'std|err|error|raw|bias|offset|mag)(_|$)|^b_[awg]_')
 """Of names that are not what was measured; b_w and b_a are biases."""

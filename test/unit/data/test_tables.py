@@ -78,6 +78,8 @@ def test_units_are_told_by_names_and_values(tmp_path):
 
 @pytest.mark.parametrize('group, names, unit, factor', [
     (PLACE, ('x', 'y', 'z'), 'ft', 0.3048), (PLACE, ('x', 'y', 'z'), 'feet', 0.3048),
+    (PLACE, ('x', 'y', 'z'), 'in', 0.0254), (FORCE, ('acc_x', 'acc_y', 'acc_z'), 'cm/s2', 0.01),
+    (FORCE, ('acc_x', 'acc_y', 'acc_z'), 'mm/s²', 1e-3),
     (SPEED, ('vel_x', 'vel_y', 'vel_z'), 'km/h', 1 / 3.6),
     (SPEED, ('vel_x', 'vel_y', 'vel_z'), 'ft/s', 0.3048),
     (SPEED, ('vel_x', 'vel_y', 'vel_z'), 'MPH', 0.44704),
@@ -90,6 +92,37 @@ def test_a_unit_in_the_name_is_read_though_it_is_no_usual_one(tmp_path, group, n
     columns = {name: values for name, values in columns.items() if name not in group}
     columns |= named([f'{name} [{unit}]' for name in names], FLIGHT.stack(*group) / factor)
     close(load(table(tmp_path, columns)))
+
+
+@pytest.mark.parametrize('changes, role', [
+    ({'pos_x': 'pos_x [furlong]'}, 'px: the unit of .*, which say furlong; known are m, mm'),
+    ({'pos_x': 'pos_x [m]', 'pos_y': 'pos_y [mm]'}, 'px: the unit of .*, which say m, mm; '),
+    ({'vel_y': 'vel_y [ly/h]'}, 'vx: '), ({'gyro_z': 'gyro_z [turns]'}, 'wx: '),
+    ({'acc_x': 'acc_x [lb]'}, 'ax: '), ({'timestamp': 'timestamp [ticks]'}, 't: ')])
+def test_a_unit_that_is_not_known_or_not_one_for_all_is_refused(tmp_path, changes, role):
+    columns = {changes.get(name, name): values for name, values in others().items()}
+    with pytest.raises(InputError, match=role):
+        load(table(tmp_path, columns))
+
+
+@pytest.mark.parametrize('head, factor', [
+    ('t [h]', 1 / 3600), ('time_hours', 1 / 3600), ('time_min', 1 / 60), ('time [UTC]', 1.0)])
+def test_a_time_in_hours_and_what_is_no_unit(tmp_path, head, factor):
+    columns = {head: FLIGHT.t * factor, **named(EVERY, FLIGHT.stack(*EVERY))}
+    columns = {f'{name} [world]' if name in PLACE else name: values
+               for name, values in columns.items()}
+    read = load(table(tmp_path, columns))
+    close(read)
+    np.testing.assert_allclose(read.t, FLIGHT.t, atol=1e-6)
+
+
+def test_an_acceleration_without_gravity_in_its_unit_is_no_specific_force_in_another(tmp_path):
+    columns = others() | named(('acc_x', 'acc_y', 'acc_z'), np.tile([0.0, 0.0, 1.0],
+                                                                   (len(FLIGHT), 1)))
+    columns = {f'{name} [m/s^2]' if name.startswith('acc') else name: values
+               for name, values in columns.items()}
+    read = load(table(tmp_path, columns))
+    assert not read.has('az') and 'not taken, an acceleration without gravity' in said(read)
 
 
 def test_angles_and_rotor_speeds_have_the_unit_of_their_names_and_a_charge_is_no_voltage(tmp_path):
