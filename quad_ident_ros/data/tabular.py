@@ -12,6 +12,7 @@ import re
 import numpy as np
 
 from quad_ident_ros.data.csv import refuse_uneven
+from quad_ident_ros.data.dates import is_time, seconds_of
 from quad_ident_ros.data.plain_numbers import plain_numbers
 from quad_ident_ros.data.stamps_in_two import with_whole_stamps
 from quad_ident_ros.data.text_lines import first_rows, rows_of
@@ -26,13 +27,6 @@ MOTIVE = ('world: Motive has y up unless its settings say otherwise: export with
 _HEAD = 20      # lines in which the first numbers come
 MOST_COLUMNS = 4096    # wide logs have hundreds; each costs the guess a look
 _FEW = 0.1      # of the cells of a column: with more text it is one of text
-_DATE = re.compile(r'([12]\d{3}-\d\d-\d\d[T ]\d\d:\d\d:\d\d(?:[.,]\d+)?)'
-                   r'(?:Z|([+-]\d\d):?(\d\d))?$')
-"""A date and time of day, in a zone or without, as ISO 8601 writes it: decimals after , or ."""
-
-_PASSED = re.compile(r'(?:(\d{1,5}) days? )?(\d{1,2}):(\d\d):(\d\d(?:[.,]\d+)?)$')
-"""A time of day, or one since a start, which pandas writes with days."""
-
 _MISSING = frozenset(('none', 'null', 'n/a', 'na', '-', '--'))
 
 
@@ -192,12 +186,8 @@ def _is_numbers(row: str, separator: str, comma: bool) -> bool:
     cells = _cells(row, separator)
     values = [_number(cell, comma) for cell in cells]
     numbers = sum(value is not None and not np.isnan(value) for value in values)
-    times = sum(map(_is_time, cells))
+    times = sum(map(is_time, cells))
     return len(cells) > 1 and numbers + times >= max(2, 0.5 * sum(map(bool, cells)))
-
-
-def _is_time(cell: str) -> bool:
-    return bool(_DATE.match(cell) or _PASSED.match(cell))
 
 
 _UNITS = frozenset('s sec ms us ns min h m mm cm ft in m/s mm/s cm/s km/h ft/s mph kn rad deg '
@@ -263,7 +253,7 @@ def _with_index(names: list[str], rows: list[str], separator: str, comma: bool) 
     if names[0] or {'time', 'index'} & set(names):
         return names
     cells = [next(iter(_cells(row, separator)), '') for row in rows]
-    if all(map(_is_time, cells)):
+    if all(map(is_time, cells)):
         return ['time', *names[1:]]
     values = [_number(cell, comma) for cell in cells]
     numbers = [value for value in values if value is not None]
@@ -293,36 +283,6 @@ def _refuse_doubled(path: Path, line: int, names: list[str]) -> None:
     if doubled:
         raise InputError(f'{path}, line {line}, column {doubled[0][:40]!r}: the header names '
                          'it twice; rename or remove one')
-
-
-def _seconds(cells: Sequence[str]) -> np.ndarray:
-    """Return the seconds since 1970 (N,) of times of day with dates, nan for an empty cell."""
-    told = [_DATE.match(cell) for cell in cells]
-    stamps = np.array([one[1].replace(',', '.') if one else 'NaT' for one in told],
-                      'datetime64[ns]')
-    ahead = [_minutes(one[2], one[3]) if one and one[2] else 0 for one in told]
-    seconds = (stamps.astype(np.int64) - np.array(ahead, np.int64) * 60_000_000_000) * 1e-9
-    return np.where(np.isnat(stamps), np.nan, seconds)
-
-
-def _exists(cell: str) -> bool:
-    try:
-        _seconds([cell])
-    except ValueError:
-        return False
-    return True
-
-
-def _minutes(hours: str, minutes: str) -> int:
-    """Return the minutes by which a zone is ahead of UTC, from such as +05 and 30."""
-    return int(hours) * 60 + int(f'{hours[0]}{minutes}')
-
-
-def _since(cells: Sequence[str]) -> np.ndarray:
-    """Return the seconds (N,) of times without a date, nan for an empty cell."""
-    told = [_PASSED.match(cell) for cell in cells]
-    return np.array([86400 * int(one[1] or 0) + 3600 * int(one[2]) + 60 * int(one[3])
-                     + float(one[4].replace(',', '.')) if one else np.nan for one in told])
 
 
 def _thorough(path: Path, rows: list[str], places: list[int], names: list[str], separator: str,
@@ -362,14 +322,9 @@ def numbers_in(path: Path, name: str, cells: Sequence[str], comma: bool,
     wrong = [k for k, value in enumerate(values) if value is None]
     if not wrong:
         return np.array(values, float)
-    for pattern, made in ((_DATE, _seconds), (_PASSED, _since)):
-        if all(pattern.match(cell) for cell in cells if cell):
-            try:
-                return made(cells)
-            except ValueError:      # such as 30 February
-                k = next(k for k, cell in enumerate(cells) if cell and not _exists(cell))
-                raise InputError(f'{path}, {place(k)}, column {name[:40]!r}: {cells[k][:40]!r} is '
-                                 'not a date; correct it or leave the cell empty') from None
+    times = seconds_of(cells, lambda k: f'{path}, {place(k)}, column {name[:40]!r}')
+    if times is not None:
+        return times
     if len(wrong) < _FEW * len(values):
         k = wrong[0]
         raise InputError(f'{path}, {place(k)}, column {name[:40]!r}: {cells[k][:40]!r} is not '
