@@ -38,7 +38,8 @@ class Table:
     columns: name -> (N,) float, nan for an empty cell; units: name -> unit, where a line says
     them; notes: what was left out; how: what separates the cells, for messages; doubts: what the
     program that wrote the table leaves open; rate: Hz, of frames that are counted, or 0; text:
-    name -> cells of the columns that hold text and are no numbers of a flight.
+    name -> cells of the columns that hold text and are no numbers of a flight; before: what the
+    names of columns of one vehicle of several begin with.
     """
 
     columns: dict[str, np.ndarray]
@@ -48,6 +49,7 @@ class Table:
     doubts: tuple[str, ...] = ()
     rate: float = 0.0
     text: Mapping[str, Sequence[str]] = field(default_factory=dict)
+    before: str = ''
 
 
 def read_text(path: Path, separator: str = '') -> Table:
@@ -210,6 +212,10 @@ def _names(path: Path, rows: list[str], line: int, head: int, first: int,
     if _doubled(names) and head > 0:
         above = _cells(rows[head - 1], separator)
         if len(above) == len(names):
+            if rows[0].strip('",; \t').lower() in VICON:
+                # The name of an object stands above the first of its columns.
+                for k in range(1, len(above)):
+                    above[k] = above[k] or above[k - 1]
             names = [f'{one} {name}'.strip() for one, name in zip(above, names, strict=True)]
             names = _below(names, [_cells(row, separator) for row in rows[:head - 1]])
     bad = [name for name in names if not name.isprintable()]

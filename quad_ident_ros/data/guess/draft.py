@@ -8,7 +8,7 @@ import re
 
 import numpy as np
 
-from quad_ident_ros.data.columns import FORCE, VELOCITY
+from quad_ident_ros.data.columns import FORCE, POSITION, VELOCITY
 from quad_ident_ros.data.guess.names import AXES, BARE, NO_UNITS, NOT, plain, TURNED, UNITS
 from quad_ident_ros.data.guess.series import alike, filled, turned
 from quad_ident_ros.data.mapping import Column, factor_of, Mapping
@@ -17,6 +17,7 @@ from quad_ident_ros.data.tabular import Table
 OVER = 0.1              # s over which turns are compared, so that noise of samples counts little
 SHORTEST = 3            # letters of a name that is counted
 SAME = 0.98             # correlation of two streams of one quantity, as raw and filtered
+FORMATION = 0.2         # of the extent of a flight that two positions in it are apart
 
 
 @dataclass
@@ -47,7 +48,7 @@ class Draft:
         self.names: dict[str, str] = {}
         self.units: dict[str, str] = {}
         for name in table.columns:
-            self.names[name], self.units[name] = plain(name)
+            self.names[name], self.units[name] = plain(name.removeprefix(table.before))
             said = table.units.get(name, '').lower()
             if said:
                 self.units[name] = UNITS.get(said, said)
@@ -175,7 +176,12 @@ class Draft:
         whole = re.compile(AXES[group].format('[wxyz0-4]'))
         if whole.fullmatch(self.names[one[-1]]) and not whole.fullmatch(self.names[other[-1]]):
             return True
-        return alike(self.values(one), self.values(other)) > SAME
+        a, b = self.values(one), self.values(other)
+        if group == POSITION:   # of two vehicles in formation, which move alike
+            apart = np.linalg.norm(np.nanmean(a - b, axis=0))
+            if apart > FORMATION * np.linalg.norm(np.nanstd(a, axis=0)):
+                return False
+        return alike(a, b) > SAME
 
 
 def together(names: Sequence[str]) -> str:
