@@ -27,6 +27,10 @@ MOTIVE = ('world: Motive has y up unless its settings say otherwise: export with
 _HEAD = 20      # lines in which the first numbers come
 MOST_COLUMNS = 4096    # wide logs have hundreds; each costs the guess a look
 _FEW = 0.1      # of the cells of a column: with more text it is one of text
+_COMMA = re.compile(r'[-+]?[\d.]*,\d*(?:[eE][-+]?\d+)?')
+_POINT = re.compile(r'[-+]?(?:0?\.\d+|\d+\.(?!\d{3}$)\d+)(?:[eE][-+]?\d+)?|[-+]?\d.*,.*\.\d*')
+"""Numbers with a decimal comma; with a point that is decimal, for it does not part thousands."""
+
 _MISSING = frozenset(('none', 'null', 'n/a', 'na', '-', '--'))
 
 
@@ -108,7 +112,8 @@ class _Layout:
 def _layout(path: Path, rows: list[str], places: list[int], separator: str) -> _Layout:
     """Return the _Layout of a table from its first lines, and where they stand."""
     separator = separator or separator_in(rows)
-    comma = separator != ',' and any(',' in row for row in rows[1:_HEAD])
+    cells = [cell for row in rows[1:_HEAD] for cell in _cells(row, separator)]
+    comma = any(map(_COMMA.fullmatch, cells)) and not any(map(_POINT.fullmatch, cells))
     head, first = _head(path, rows, separator, comma)
     names, units = _names(path, rows, places[head], head, first, separator)
     names = _under_headings(names, rows[first:first + _HEAD], separator)
@@ -184,9 +189,12 @@ def _head(path: Path, rows: list[str], separator: str, comma: bool) -> tuple[int
 
 
 def _is_numbers(row: str, separator: str, comma: bool) -> bool:
-    """Return whether half or more of the cells of a line are numbers."""
+    """Return whether half or more of the cells of a line are numbers, or none is text."""
     cells = _cells(row, separator)
     values = [_number(cell, comma) for cell in cells]
+    if any(cells) and all(value is not None or is_time(cell)
+                          for value, cell in zip(values, cells, strict=True)):
+        return len(cells) > 1       # most are missing, as before a first fix
     numbers = sum(value is not None and not np.isnan(value) for value in values)
     times = sum(map(is_time, cells))
     return len(cells) > 1 and numbers + times >= max(2, 0.5 * sum(map(bool, cells)))

@@ -147,6 +147,45 @@ def test_separators_and_decimal_commas(tmp_path, separator, comma):
     assert ('decimal commas' in said(read)) == comma
 
 
+def test_decimal_commas_in_quotes_between_commas(tmp_path):
+    """As pandas writes them with decimal=',' alone."""
+    columns = {'timestamp': FLIGHT.t, **named(PLACE, FLIGHT.stack(*PLACE)), 'vbat': FLIGHT.t + 12}
+    path = tmp_path / 'f.csv'
+    path.write_text(','.join(columns) + '\n' + ''.join(
+        ','.join(f'"{value!s}"'.replace('.', ',') for value in row) + '\n'
+        for row in zip(*columns.values(), strict=True)))
+    read = load(path)
+    close(read, names=PLACE)
+    assert 'decimal commas' in said(read)
+
+
+@pytest.mark.parametrize('digits', [2, 3])
+def test_commas_between_thousands_are_no_decimal_ones(tmp_path, digits):
+    """1,403.25 was read as 1.40325."""
+    columns = {'t [s]': FLIGHT.t, **named(PLACE, FLIGHT.stack(*PLACE)),
+               'm1': 1300 + FLIGHT.t}
+    path = tmp_path / 'f.csv'
+    path.write_text(';'.join(columns) + '\n' + ''.join(
+        ';'.join(f'{value:,.{digits}f}' for value in row) + '\n'
+        for row in zip(*columns.values(), strict=True)))
+    read = load(path)
+    close(read, names=PLACE, atol=0.01)
+    assert not read.has('m1') and 'columns of text are left out: m1' in said(read)
+
+
+@pytest.mark.parametrize('missing', ['nan', ''])
+def test_a_flight_may_begin_with_rows_that_are_missing(tmp_path, missing):
+    """As before a first fix: more of them than lines in which the numbers are looked for."""
+    columns = {'timestamp': FLIGHT.t, **named(EVERY, FLIGHT.stack(*EVERY))}
+    rows = [[t, *(value if k >= 100 else missing for value in row)]
+            for k, (t, *row) in enumerate(zip(*columns.values(), strict=True))]
+    path = tmp_path / 'f.csv'
+    path.write_text('\n'.join(','.join(map(str, row)) for row in [list(columns), *rows]) + '\n')
+    read = load(path)
+    close(read, FLIGHT.slice(100, None))
+    assert read.t[0] == FLIGHT.t[100]
+
+
 def test_a_flight_record_between_semicolons_keeps_its_thrust_and_moments(tmp_path):
     moments = {name: np.linspace(low, high, len(FLIGHT)) for name, low, high in (
         ('u1', 5.0, 9.0), ('u2', -0.1, 0.1), ('u3', -0.1, 0.1), ('u4', -0.01, 0.01))}
