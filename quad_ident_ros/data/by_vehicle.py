@@ -9,6 +9,7 @@ import numpy as np
 
 from quad_ident_ros.data.guess.names import plain, TIME
 from quad_ident_ros.data.tabular import shown, Table
+from quad_ident_ros.data.vehicle_names import VEHICLE
 
 MOST = 50       # vehicles; a column of more values counts something else
 _NAMED = re.compile(
@@ -17,8 +18,7 @@ _NAMED = re.compile(
 """Of columns that say which vehicle a row is of."""
 
 _BEFORE = re.compile(
-    r'(?i)(/?(?:(?:vehicle|drone|uav|quad|quadrotor|robot|agent|rigid ?_?body|body|mav|cf|'
-    r'crazyflie)[ _]?\d{1,3})[^a-z0-9]+)[a-z].*|(.+ )(?:T[XYZ]|R[WXYZ])')
+    rf'(?i)(/?{VEHICLE}[^a-z0-9]+)[a-z].*|(.+ )(?:T[XYZ]|R[WXYZ])')
 """Of columns that say their vehicle before what they are; those of Vicon end in TX to RW."""
 
 
