@@ -427,6 +427,25 @@ def test_columns_of_other_types_in_parquet_are_numbers(tmp_path):
     assert 'columns of text are left out: tags' in said(read)
 
 
+def test_times_by_type_in_parquet_have_no_other_unit(tmp_path):
+    """The unit of their type, us, made 6 s of flight 6000 s."""
+    pyarrow = pytest.importorskip('pyarrow', reason='pyarrow is not installed')
+    from pyarrow import parquet
+    columns = {name: pyarrow.array(values) for name, values in others().items()}
+    columns['timestamp'] = pyarrow.array(
+        np.round(1e6 * (1.7e9 + FLIGHT.t)).astype('datetime64[us]'))
+    path = tmp_path / 'f.parquet'
+    parquet.write_table(pyarrow.table(columns), path)
+    close(load(path))
+    named_so = {'px': 'pos_x', 'py': 'pos_y', 'pz': 'pos_z'}
+    for unit in ({}, {'unit': 'us'}):
+        refused(path, "column 'timestamp' holds times by its type", 'write unit: ns', mapping=(
+            mapping_from({'columns': {'t': {'column': 'timestamp', **unit}, **named_so}}, 'm')))
+    mapping = mapping_from({'columns': {'t': {'column': 'timestamp', 'unit': 'ns'}, **named_so}},
+                           'm')
+    close(load(path, mapping), names=PLACE)
+
+
 def test_an_index_of_times_in_parquet_needs_no_name(tmp_path):
     """As pandas writes one."""
     pyarrow = pytest.importorskip('pyarrow', reason='pyarrow is not installed')
