@@ -9,7 +9,7 @@ import re
 import numpy as np
 
 from quad_ident_ros.data.columns import FORCE, POSITION, VELOCITY
-from quad_ident_ros.data.guess.names import AXES, BARE, NO_UNITS, NOT, plain, TURNED, UNITS
+from quad_ident_ros.data.guess.names import AXES, BARE, NO_UNITS, NOT, plain, TURNED, unit_by
 from quad_ident_ros.data.guess.series import alike, filled, turned
 from quad_ident_ros.data.mapping import Column, factor_of, Mapping
 from quad_ident_ros.data.tabular import Table
@@ -51,7 +51,7 @@ class Draft:
             self.names[name], self.units[name] = plain(name.removeprefix(table.before))
             said = table.units.get(name, '').lower()
             if said:
-                self.units[name] = UNITS.get(said, said)
+                self.units[name] = unit_by(said)
         self.free = [name for name in table.columns if not NOT.search(self.names[name])
                      and np.isfinite(table.columns[name]).sum() >= 2]
         self.t: np.ndarray | None = None            # (N,) s

@@ -11,20 +11,20 @@ from quad_ident_ros.data.record import QUATERNION
 UNIT = re.compile(r'[\[(]\s*([^\])]*)\s*[\])]\s*$')
 ENDING = re.compile(r'_(ns|us|usec|ms|msec|s|sec|secs|seconds|mm|cm|m|ft|deg|rad|mrad|dps|radps|'
                     r'rpm|krpm|hz|g|mv|v|(?<=time_)min|minutes|(?<=time_)h|hours)$')
-UNITS = {'usec': 'us', 'µs': 'us', 'msec': 'ms', 'sec': 's', 'secs': 's', 'seconds': 's',
-         'dps': 'deg/s', '°/s': 'deg/s', 'degps': 'deg/s', 'radps': 'rad/s', '°': 'deg',
-         'degrees': 'deg', 'radians': 'rad', 'rad s^-1': 'rad/s', 'm s^-1': 'm/s',
-         'm s^-2': 'm/s^2', 'millimeters': 'mm', 'centimeters': 'cm', 'meters': 'm',
-         'millimetres': 'mm', 'centimetres': 'cm', 'metres': 'm', 'volt': 'V', 'volts': 'V',
-         'v': 'V', 'mv': 'mV', "g's": 'g',
-         **{f'{length}/s{squared}': f'{length}/s^2' for length in ('m', 'cm', 'mm')
-            for squared in ('2', '²', '/s', '**2')},
-         'u/min': 'rpm', 'tr/min': 'rpm', '1/min': 'rpm', 'min^-1': 'rpm', 'grad': 'deg',
-         'grad/s': 'deg/s', 'sekunden': 's', 'minutes': 'min', 'stunden': 'h',
-         'hours': 'h', 'hour': 'h', 'hr': 'h', 'hrs': 'h', 'inch': 'in', 'inches': 'in',
-         'feet': 'ft', 'fps': 'ft/s', 'kmh': 'km/h', 'kph': 'km/h', 'mi/h': 'mph', 'kt': 'kn',
-         'knots': 'kn', 'rev/min': 'rpm', 'r/min': 'rpm',
+UNITS = {'dps': 'deg/s', 'degps': 'deg/s', 'radps': 'rad/s', 'volt': 'V', 'volts': 'V', 'v': 'V',
+         'mv': 'mV', "g's": 'g',
+         'u/min': 'rpm', 'tr/min': 'rpm', '1/min': 'rpm', 'min^-1': 'rpm', 'rev/min': 'rpm',
+         'r/min': 'rpm', 'grad': 'deg', 'grad/s': 'deg/s', 'sekunden': 's', 'stunden': 'h',
+         'minute': 'min', 'minutes': 'min', 'hour': 'h', 'hours': 'h', 'hr': 'h', 'hrs': 'h',
+         'inch': 'in', 'inches': 'in', 'feet': 'ft', 'feet/s': 'ft/s', 'fps': 'ft/s',
+         'kmh': 'km/h', 'kph': 'km/h', 'mi/h': 'mph', 'kt': 'kn', 'knots': 'kn',
          'hz': 'Hz', 'rps': 'Hz', 'rev/s': 'Hz', 'u/s': 'Hz', 'tr/s': 'Hz'}
+_SPELT = ((r'[µμ]|\bmicro', 'u'), (r'\bmilli', 'm'), (r'\bcenti', 'c'), (r'\bnano', 'n'),
+          (r'met(?:er|re)s?\b', 'm'), (r'sec(?:ond)?s?\b', 's'), (r'°|\bdegrees?\b', 'deg'),
+          (r'\bradians?\b|\brads\b', 'rad'), (r'²|\*\*2', '^2'), (r'/s2$|/s/s$', '/s^2'),
+          (r'[ .*·]s\^?-1$', '/s'), (r'[ .*·]s\^?-2$', '/s^2'))
+"""Words and signs in units, and what stands for them, one after the other."""
+
 NO_UNITS = frozenset(('', '-', '1', 'world', 'body', 'global', 'local', 'inertial', 'ned', 'enu',
                       'frd', 'flu', 'nwu', 'raw', 'filtered', 'estimated', 'measured', 'float',
                       'float32', 'float64', 'double', 'utc', 'unix', 'epoch', 'gps'))
@@ -106,6 +106,13 @@ BATTERY = re.compile(r'(^|_)(vbat|vbatt|v_bat|bat_v|battery|battery_voltage|volt
                      r'battery_v|bat_volt|supply_voltage)$')
 
 
+def unit_by(said: str) -> str:
+    """Return the unit that small letters say, as data.mapping writes it where it is known."""
+    for pattern, short in _SPELT:
+        said = re.sub(pattern, short, said)
+    return UNITS.get(said, said)
+
+
 def plain(name: str) -> tuple[str, str]:
     """Return a name in small letters and English, _ between its parts, and its unit."""
     said = ''
@@ -119,4 +126,4 @@ def plain(name: str) -> tuple[str, str]:
     if not said and match and len(name) > len(match.group()):
         name, said = name[:match.start()], match.group(1)
     name = _AFTER.sub(r'_\2_\1', in_english(name))
-    return name, UNITS.get(said, said)
+    return name, unit_by(said)

@@ -395,6 +395,16 @@ def test_names_and_kinds():
     assert time_unit(np.arange(0, 1e7, 1e4)) == 'us'
 
 
+@pytest.mark.parametrize('said, unit', [
+    ('millisecond', 'ms'), ('usec', 'us'), ('µs', 'us'), ('Seconds', 's'), ('Meters', 'm'),
+    ('centimetres', 'cm'), ('m/s²', 'm/s^2'), ('cm/s2', 'cm/s^2'), ('m/s/s', 'm/s^2'),
+    ('m s-2', 'm/s^2'), ('rad s^-1', 'rad/s'), ('rad·s-1', 'rad/s'), ('deg/sec', 'deg/s'),
+    ('°/s', 'deg/s'), ('degrees', 'deg'), ('Degrees/second', 'deg/s'), ('meters/second', 'm/s'),
+    ('min^-1', 'rpm'), ('mrad/s', 'mrad/s'), ('feet', 'ft')])
+def test_units_may_be_spelt_in_words(said, unit):
+    assert plain(f'x ({said})') == ('x', unit)
+
+
 def test_parquet_is_read_by_the_same_rules(tmp_path):
     pyarrow = pytest.importorskip('pyarrow', reason='pyarrow is not installed')
     from pyarrow import parquet
