@@ -16,6 +16,7 @@ from quad_ident_ros.data.dates import is_time, seconds_of
 from quad_ident_ros.data.plain_numbers import plain_numbers
 from quad_ident_ros.data.stamps_in_two import with_whole_stamps
 from quad_ident_ros.data.text_lines import first_rows, rows_of
+from quad_ident_ros.data.unit_names import is_unit
 from quad_ident_ros.errors import InputError
 
 SEPARATORS = (',', ';', '\t')
@@ -200,15 +201,10 @@ def _is_numbers(row: str, separator: str, comma: bool) -> bool:
     return len(cells) > 1 and numbers + times >= max(2, 0.5 * sum(map(bool, cells)))
 
 
-_UNITS = frozenset('s sec ms us ns min h m mm cm ft in m/s mm/s cm/s km/h ft/s mph kn rad deg '
-                   'mrad rad/s deg/s dps mrad/s rpm krpm hz g mg m/s2 m/s^2 m/s² cm/s2 cm/s^2 '
-                   'cm/s² mm/s2 mm/s^2 mm/s² v mv pwm % 1 - n'.split())
-
-
 def _is_units(cells: list[str]) -> bool:
     """Return whether cells are units of what is above them."""
     said = [cell.strip('[]()').lower() for cell in cells if cell]
-    return bool(said) and sum(cell in _UNITS for cell in said) >= 0.7 * len(said)
+    return bool(said) and sum(map(is_unit, said)) >= 0.7 * len(said)
 
 
 def _names(path: Path, rows: list[str], line: int, head: int, first: int,

@@ -9,10 +9,11 @@ import re
 import numpy as np
 
 from quad_ident_ros.data.columns import FORCE, POSITION, VELOCITY
-from quad_ident_ros.data.guess.names import AXES, BARE, NO_UNITS, NOT, plain, TURNED, unit_by
+from quad_ident_ros.data.guess.names import AXES, BARE, NO_UNITS, NOT, plain, TURNED
 from quad_ident_ros.data.guess.series import alike, filled, turned
 from quad_ident_ros.data.mapping import Column, factor_of, Mapping
 from quad_ident_ros.data.tabular import Table
+from quad_ident_ros.data.unit_names import unit_by
 
 OVER = 0.1              # s over which turns are compared, so that noise of samples counts little
 SHORTEST = 3            # letters of a name that is counted

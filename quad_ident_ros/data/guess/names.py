@@ -7,24 +7,12 @@ import re
 from quad_ident_ros.data.columns import FORCE, POSITION, RATE, VELOCITY
 from quad_ident_ros.data.guess.words import in_english, without_accents
 from quad_ident_ros.data.record import QUATERNION
+from quad_ident_ros.data.unit_names import unit_by
 
 UNIT = re.compile(r'[\[(]\s*([^\])]*)\s*[\])]\s*$')
+_ENTRY = re.compile(r'\d+|[wxyzWXYZ]')
 ENDING = re.compile(r'_(ns|us|usec|ms|msec|s|sec|secs|seconds|mm|cm|m|ft|deg|rad|mrad|dps|radps|'
                     r'rpm|krpm|hz|g|mv|v|(?<=time_)min|minutes|(?<=time_)h|hours)$')
-UNITS = {'dps': 'deg/s', 'degps': 'deg/s', 'radps': 'rad/s', 'volt': 'V', 'volts': 'V', 'v': 'V',
-         'mv': 'mV', "g's": 'g',
-         'u/min': 'rpm', 'tr/min': 'rpm', '1/min': 'rpm', 'min^-1': 'rpm', 'rev/min': 'rpm',
-         'r/min': 'rpm', 'grad': 'deg', 'grad/s': 'deg/s', 'sekunden': 's', 'stunden': 'h',
-         'minute': 'min', 'minutes': 'min', 'hour': 'h', 'hours': 'h', 'hr': 'h', 'hrs': 'h',
-         'inch': 'in', 'inches': 'in', 'feet': 'ft', 'feet/s': 'ft/s', 'fps': 'ft/s',
-         'kmh': 'km/h', 'kph': 'km/h', 'mi/h': 'mph', 'kt': 'kn', 'knots': 'kn',
-         'hz': 'Hz', 'rps': 'Hz', 'rev/s': 'Hz', 'u/s': 'Hz', 'tr/s': 'Hz'}
-_SPELT = ((r'[µμ]|\bmicro', 'u'), (r'\bmilli', 'm'), (r'\bcenti', 'c'), (r'\bnano', 'n'),
-          (r'met(?:er|re)s?\b', 'm'), (r'sec(?:ond)?s?\b', 's'), (r'°|\bdegrees?\b', 'deg'),
-          (r'\bradians?\b|\brads\b', 'rad'), (r'²|\*\*2', '^2'), (r'/s2$|/s/s$', '/s^2'),
-          (r'[ .*·]s\^?-1$', '/s'), (r'[ .*·]s\^?-2$', '/s^2'))
-"""Words and signs in units, and what stands for them, one after the other."""
-
 NO_UNITS = frozenset(('', '-', '1', 'world', 'body', 'global', 'local', 'inertial', 'ned', 'enu',
                       'frd', 'flu', 'nwu', 'raw', 'filtered', 'estimated', 'measured', 'float',
                       'float32', 'float64', 'double', 'utc', 'unix', 'epoch', 'gps'))
@@ -106,19 +94,12 @@ BATTERY = re.compile(r'(^|_)(vbat|vbatt|v_bat|bat_v|battery|battery_voltage|volt
                      r'battery_v|bat_volt|supply_voltage)$')
 
 
-def unit_by(said: str) -> str:
-    """Return the unit that small letters say, as data.mapping writes it where it is known."""
-    for pattern, short in _SPELT:
-        said = re.sub(pattern, short, said)
-    return UNITS.get(said, said)
-
-
 def plain(name: str) -> tuple[str, str]:
     """Return a name in small letters and English, _ between its parts, and its unit."""
     said = ''
     match = UNIT.search(name)
-    # q[0] is an entry of an array, gyro.x [deg/s] has a unit.
-    if match and not match.group(1).isdigit():
+    # q[0] and q(w) are entries of an array, gyro.x [deg/s] has a unit.
+    if match and not _ENTRY.fullmatch(match.group(1)):
         name, said = name[:match.start()], match.group(1).strip().lower()
     name = re.sub(r'([a-z0-9])([A-Z])', r'\1_\2', name.strip())
     name = re.sub(r'[^a-z0-9]+', '_', without_accents(name).lower()).strip('_')

@@ -206,6 +206,10 @@ def test_a_line_of_units_and_lines_above_the_header(tmp_path):
                      + ['m/s^2'] * 3 + ['us'] * 4 + ['V'])
     (tmp_path / 'g.csv').write_text('\n'.join([rows[2], units, *rows[3:]]) + '\n')
     close(load(tmp_path / 'g.csv'))
+    words = (units.replace('m/s^2', 'm/sec^2').replace('rad/s', 'radians/sec')
+             .replace(',m,', ',meters,').replace('V', 'Volts').replace('us', 'microseconds', 1))
+    (tmp_path / 'h.csv').write_text('\n'.join([rows[2], words, *rows[3:]]) + '\n')
+    close(load(tmp_path / 'h.csv'))
 
 
 def test_aerospace_frames_are_told_by_where_up_is(tmp_path):
@@ -390,7 +394,8 @@ def test_our_own_format_is_read_as_ever(tmp_path):
 def test_names_and_kinds():
     assert plain('Gyro X [deg/s]') == ('gyro_x', 'deg/s')
     assert plain('stateEstimate.x') == ('state_estimate_x', '')
-    assert plain('q[0]') == ('q_0', '') and plain('time_us') == ('time', 'us')
+    assert plain('q[0]') == ('q_0', '') and plain('pos(X)') == ('pos_x', '')
+    assert plain('time_us') == ('time', 'us')
     assert time_unit(np.arange(0, 10, 0.01)) == 's'
     assert time_unit(np.arange(0, 1e7, 1e4)) == 'us'
 
