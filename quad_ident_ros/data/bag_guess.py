@@ -13,6 +13,7 @@ from quad_ident_ros.data.mapping import Mapping, ROLES, Source
 from quad_ident_ros.data.message import Message
 from quad_ident_ros.data.message_roles import could_be, is_tf, NoSuch, reading_of, ROLES_OF
 from quad_ident_ros.data.topics import not_unit, OTHER_SHAPE
+from quad_ident_ros.data.vehicle_names import VEHICLE
 from quad_ident_ros.errors import InputError
 
 MOTION = ('pose', 'position', 'attitude', 'velocity', 'rate', 'specific_force')
@@ -28,6 +29,7 @@ _ASKED = re.compile(r'set_?point|target|desired|reference|goal|command|waypoint'
 # beside an estimate.
 _INPUT = re.compile(r'(^|/)fmu/in/')
 _SECOND = re.compile(r'raw|ground_?truth|(^|/)odometry/(in|out)$|(^|/)global_position/')
+_OF_ONE = re.compile(rf'(?:^|/)({VEHICLE})/')
 
 
 def guessed(path: str | Path, bag: BagFile, mapping: Mapping) -> tuple[Mapping, list[str]]:
@@ -59,8 +61,24 @@ def guessed(path: str | Path, bag: BagFile, mapping: Mapping) -> tuple[Mapping, 
         raise InputError(f'{path}: several topics could serve one role ({which})'[:600]
                          + f'; name one of each in a mapping file (--mapping), such as: topics: '
                          f'{{{lines}}}'[:350])
+    _refuse_mixture(path, [best[0] for best, _ in found.values() if len(best) == 1])
     sources = {role: Source(best[0].name) for role, (best, _) in found.items() if len(best) == 1}
     return replace(mapping, topics=sources), _notes(found, topics)
+
+
+def _refuse_mixture(path: str | Path, topics: list[Topic]) -> None:
+    """Raise InputError where the names of topics are those of several vehicles."""
+    by_number: dict[str, list[str]] = {}     # one may be cf1 here and crazyflie_1 there
+    for topic in dict.fromkeys(topics):
+        match = _OF_ONE.search(topic.name.lower())
+        if match:
+            by_number.setdefault(re.sub(r'\D', '', match[1].removeprefix('px4')), []).append(
+                topic.name)
+    if len(by_number) > 1:
+        which = '; '.join(', '.join(some) for some in by_number.values())
+        raise InputError(f'{path}: the topics known by their types are of several vehicles '
+                         f'({which[:400]}); name those of one in a mapping file (--mapping), such '
+                         f'as: topics: {{pose: {{topic: {topics[0].name[:100]}}}}}')
 
 
 def _best(role: str, topics: list[Topic], first: dict[str, Message]

@@ -46,6 +46,10 @@ def record_of(path: Path, table: Table, mapping: Mapping, notes: Sequence[str]) 
                 raise InputError(f'{path}: columns: {role}: there is no column {name[:40]!r} of '
                                  f'numbers; there are {shown(table.columns)}')
     time = chosen['t']
+    typed = table.units.get(time.names[0]) if table.how == 'Parquet' else None
+    if typed and time.unit != typed:
+        raise InputError(f'{path}: columns: t: column {time.names[0][:40]!r} holds times by its '
+                         f'type, which are read in {typed}; write unit: {typed}')
     t = _values(table, time)[:, 0] * factor_of('t', time.unit)
     if not np.isfinite(t).any():
         raise InputError(f'{path}, column {time.names[0][:40]!r}: no time in it is a number')

@@ -32,15 +32,15 @@ ATTITUDE = 'q'
 """Stands for all four columns of a quaternion."""
 
 UNITS = {
-    's': {'s': 1.0, 'ms': 1e-3, 'us': 1e-6, 'ns': 1e-9, 'min': 60.0},
-    'm': {'m': 1.0, 'mm': 1e-3, 'cm': 1e-2, 'ft': 0.3048},
+    's': {'s': 1.0, 'ms': 1e-3, 'us': 1e-6, 'ns': 1e-9, 'min': 60.0, 'h': 3600.0},
+    'm': {'m': 1.0, 'mm': 1e-3, 'cm': 1e-2, 'ft': 0.3048, 'in': 0.0254},
     'm/s': {'m/s': 1.0, 'mm/s': 1e-3, 'cm/s': 1e-2, 'km/h': 1 / 3.6, 'ft/s': 0.3048,
             'mph': 0.44704, 'kn': 1852 / 3600},
     'rad': {'rad': 1.0, 'deg': np.pi / 180, 'mrad': 1e-3},
     'rad/s': {'rad/s': 1.0, 'deg/s': np.pi / 180, 'mrad/s': 1e-3, 'rpm': np.pi / 30,
               'krpm': 1000 * np.pi / 30, 'Hz': 2 * np.pi},
-    'm/s^2': {'m/s^2': 1.0, 'g': GRAVITY, 'mg': 1e-3 * GRAVITY,
-              'g/2048': GRAVITY / 2048},
+    'm/s^2': {'m/s^2': 1.0, 'cm/s^2': 1e-2, 'mm/s^2': 1e-3, 'g': GRAVITY,
+              'mg': 1e-3 * GRAVITY, 'g/2048': GRAVITY / 2048},
     'V': {'V': 1.0, 'mV': 1e-3},
 }
 """Units that a column of a table or a topic may have, by the unit of the flight record."""

@@ -42,6 +42,7 @@ ACTUATORS = 'actuators'
 BY_MOTORS = 'by_motors'
 """Info of a record: its commands are as uncertain as the vehicle file says that its motors are."""
 BEYOND = 0.05       # of the range: what is further out is another kind of signal
+FAINT = 0.01        # of the range: so are signals that never exceed this, as 0 to 1 in 0 to 65535
 BY_SIZE = 'by their size'
 SIGNED, UNSIGNED = ('{kind: normalised, minimum: -1, maximum: 1}',
                     '{kind: normalised, minimum: 0, maximum: 1}')
@@ -295,7 +296,7 @@ def _refuse_range(where: str, values: np.ndarray, vehicle: Vehicle) -> None:
         return
     span = motors.maximum - motors.minimum
     over = np.mean(on > motors.maximum + BEYOND * span) > MANY
-    if over or not (on > motors.minimum).any():
+    if over or not (on > motors.minimum + FAINT * span).any():
         raise InputError(
             f'{where}: the outputs, {on.min():.6g} to {on.max():.6g}, are not what {vehicle.name} '
             f'says of its motors: {motors.kind} from {motors.minimum:g} to {motors.maximum:g}; '

@@ -14,6 +14,7 @@ from quad_ident_ros.data.tabular import left_out, MOST_COLUMNS, noted, numbers_i
 from quad_ident_ros.errors import InputError
 
 _INDEX = '__index_level_0__'     # the name that pandas gives an index without one
+NANOSECONDS = 'ns'   # unit of columns whose type says that they are times
 MOST_ENTRIES = 16   # of a list in a cell: a pose with its attitude has 7, a matrix 16
 
 
@@ -34,6 +35,7 @@ def read_parquet(path: Path) -> Table:
                 break
             found = found.flatten()
         columns: dict[str, np.ndarray] = {}
+        units: dict[str, str] = {}
         text: dict[str, Sequence[str]] = {}
         for name, column in zip(found.column_names, found.columns, strict=True):
             if name == _INDEX and 'time' not in found.column_names and _is_time(pyarrow, column):
@@ -53,6 +55,8 @@ def read_parquet(path: Path) -> Table:
                 text[name] = cells
             else:
                 columns[name.strip()] = values
+                if _is_time(pyarrow, column):
+                    units[name.strip()] = NANOSECONDS
     except InputError:
         raise
     except Exception as error:  # a damaged file makes the parser raise anything
@@ -63,7 +67,7 @@ def read_parquet(path: Path) -> Table:
         raise InputError(f'{path}: there are fewer than 2 rows of numbers; give a table with '
                          f'samples{left_out(text, "; ")}')
     columns, told = with_whole_stamps(columns)
-    return Table(columns, {}, (*told, *noted(text)), 'Parquet', text=text)
+    return Table(columns, units, (*told, *noted(text)), 'Parquet', text=text)
 
 
 def _is_time(pyarrow: Any, column: Any) -> bool:

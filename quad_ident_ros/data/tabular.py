@@ -12,9 +12,11 @@ import re
 import numpy as np
 
 from quad_ident_ros.data.csv import refuse_uneven
+from quad_ident_ros.data.dates import is_time, seconds_of
 from quad_ident_ros.data.plain_numbers import plain_numbers
 from quad_ident_ros.data.stamps_in_two import with_whole_stamps
 from quad_ident_ros.data.text_lines import first_rows, rows_of
+from quad_ident_ros.data.unit_names import is_unit
 from quad_ident_ros.errors import InputError
 
 SEPARATORS = (',', ';', '\t')
@@ -26,12 +28,9 @@ MOTIVE = ('world: Motive has y up unless its settings say otherwise: export with
 _HEAD = 20      # lines in which the first numbers come
 MOST_COLUMNS = 4096    # wide logs have hundreds; each costs the guess a look
 _FEW = 0.1      # of the cells of a column: with more text it is one of text
-_DATE = re.compile(r'([12]\d{3}-\d\d-\d\d[T ]\d\d:\d\d:\d\d(?:[.,]\d+)?)'
-                   r'(?:Z|([+-]\d\d):?(\d\d))?$')
-"""A date and time of day, in a zone or without, as ISO 8601 writes it: decimals after , or ."""
-
-_PASSED = re.compile(r'(?:(\d{1,5}) days? )?(\d{1,2}):(\d\d):(\d\d(?:[.,]\d+)?)$')
-"""A time of day, or one since a start, which pandas writes with days."""
+_COMMA = re.compile(r'[-+]?[\d.]*,\d*(?:[eE][-+]?\d+)?')
+_POINT = re.compile(r'[-+]?(?:0?\.\d+|\d+\.(?!\d{3}$)\d+)(?:[eE][-+]?\d+)?|[-+]?\d.*,.*\.\d*')
+"""Numbers with a decimal comma; with a point that is decimal, for it does not part thousands."""
 
 _MISSING = frozenset(('none', 'null', 'n/a', 'na', '-', '--'))
 
@@ -44,7 +43,8 @@ class Table:
     columns: name -> (N,) float, nan for an empty cell; units: name -> unit, where a line says
     them; notes: what was left out; how: what separates the cells, for messages; doubts: what the
     program that wrote the table leaves open; rate: Hz, of frames that are counted, or 0; text:
-    name -> cells of the columns that hold text and are no numbers of a flight.
+    name -> cells of the columns that hold text and are no numbers of a flight; before: what the
+    names of columns of one vehicle of several begin with.
     """
 
     columns: dict[str, np.ndarray]
@@ -54,6 +54,7 @@ class Table:
     doubts: tuple[str, ...] = ()
     rate: float = 0.0
     text: Mapping[str, Sequence[str]] = field(default_factory=dict)
+    before: str = ''
 
 
 def read_text(path: Path, separator: str = '') -> Table:
@@ -112,7 +113,8 @@ class _Layout:
 def _layout(path: Path, rows: list[str], places: list[int], separator: str) -> _Layout:
     """Return the _Layout of a table from its first lines, and where they stand."""
     separator = separator or separator_in(rows)
-    comma = separator != ',' and any(',' in row for row in rows[1:_HEAD])
+    cells = [cell for row in rows[1:_HEAD] for cell in _cells(row, separator)]
+    comma = any(map(_COMMA.fullmatch, cells)) and not any(map(_POINT.fullmatch, cells))
     head, first = _head(path, rows, separator, comma)
     names, units = _names(path, rows, places[head], head, first, separator)
     names = _under_headings(names, rows[first:first + _HEAD], separator)
@@ -188,27 +190,21 @@ def _head(path: Path, rows: list[str], separator: str, comma: bool) -> tuple[int
 
 
 def _is_numbers(row: str, separator: str, comma: bool) -> bool:
-    """Return whether half or more of the cells of a line are numbers."""
+    """Return whether half or more of the cells of a line are numbers, or none is text."""
     cells = _cells(row, separator)
     values = [_number(cell, comma) for cell in cells]
+    if any(cells) and all(value is not None or is_time(cell)
+                          for value, cell in zip(values, cells, strict=True)):
+        return len(cells) > 1       # most are missing, as before a first fix
     numbers = sum(value is not None and not np.isnan(value) for value in values)
-    times = sum(map(_is_time, cells))
+    times = sum(map(is_time, cells))
     return len(cells) > 1 and numbers + times >= max(2, 0.5 * sum(map(bool, cells)))
-
-
-def _is_time(cell: str) -> bool:
-    return bool(_DATE.match(cell) or _PASSED.match(cell))
-
-
-_UNITS = frozenset('s sec ms us ns min m mm cm ft m/s mm/s cm/s km/h ft/s mph kn rad deg mrad '
-                   'rad/s deg/s dps mrad/s rpm krpm hz g mg m/s2 m/s^2 m/s² v mv us pwm % '
-                   '1 - n'.split())
 
 
 def _is_units(cells: list[str]) -> bool:
     """Return whether cells are units of what is above them."""
     said = [cell.strip('[]()').lower() for cell in cells if cell]
-    return bool(said) and sum(cell in _UNITS for cell in said) >= 0.7 * len(said)
+    return bool(said) and sum(map(is_unit, said)) >= 0.7 * len(said)
 
 
 def _names(path: Path, rows: list[str], line: int, head: int, first: int,
@@ -220,6 +216,10 @@ def _names(path: Path, rows: list[str], line: int, head: int, first: int,
     if _doubled(names) and head > 0:
         above = _cells(rows[head - 1], separator)
         if len(above) == len(names):
+            if rows[0].strip('",; \t').lower() in VICON:
+                # The name of an object stands above the first of its columns.
+                for k in range(1, len(above)):
+                    above[k] = above[k] or above[k - 1]
             names = [f'{one} {name}'.strip() for one, name in zip(above, names, strict=True)]
             names = _below(names, [_cells(row, separator) for row in rows[:head - 1]])
     bad = [name for name in names if not name.isprintable()]
@@ -263,7 +263,7 @@ def _with_index(names: list[str], rows: list[str], separator: str, comma: bool) 
     if names[0] or {'time', 'index'} & set(names):
         return names
     cells = [next(iter(_cells(row, separator)), '') for row in rows]
-    if all(map(_is_time, cells)):
+    if all(map(is_time, cells)):
         return ['time', *names[1:]]
     values = [_number(cell, comma) for cell in cells]
     numbers = [value for value in values if value is not None]
@@ -293,36 +293,6 @@ def _refuse_doubled(path: Path, line: int, names: list[str]) -> None:
     if doubled:
         raise InputError(f'{path}, line {line}, column {doubled[0][:40]!r}: the header names '
                          'it twice; rename or remove one')
-
-
-def _seconds(cells: Sequence[str]) -> np.ndarray:
-    """Return the seconds since 1970 (N,) of times of day with dates, nan for an empty cell."""
-    told = [_DATE.match(cell) for cell in cells]
-    stamps = np.array([one[1].replace(',', '.') if one else 'NaT' for one in told],
-                      'datetime64[ns]')
-    ahead = [_minutes(one[2], one[3]) if one and one[2] else 0 for one in told]
-    seconds = (stamps.astype(np.int64) - np.array(ahead, np.int64) * 60_000_000_000) * 1e-9
-    return np.where(np.isnat(stamps), np.nan, seconds)
-
-
-def _exists(cell: str) -> bool:
-    try:
-        _seconds([cell])
-    except ValueError:
-        return False
-    return True
-
-
-def _minutes(hours: str, minutes: str) -> int:
-    """Return the minutes by which a zone is ahead of UTC, from such as +05 and 30."""
-    return int(hours) * 60 + int(f'{hours[0]}{minutes}')
-
-
-def _since(cells: Sequence[str]) -> np.ndarray:
-    """Return the seconds (N,) of times without a date, nan for an empty cell."""
-    told = [_PASSED.match(cell) for cell in cells]
-    return np.array([86400 * int(one[1] or 0) + 3600 * int(one[2]) + 60 * int(one[3])
-                     + float(one[4].replace(',', '.')) if one else np.nan for one in told])
 
 
 def _thorough(path: Path, rows: list[str], places: list[int], names: list[str], separator: str,
@@ -362,14 +332,9 @@ def numbers_in(path: Path, name: str, cells: Sequence[str], comma: bool,
     wrong = [k for k, value in enumerate(values) if value is None]
     if not wrong:
         return np.array(values, float)
-    for pattern, made in ((_DATE, _seconds), (_PASSED, _since)):
-        if all(pattern.match(cell) for cell in cells if cell):
-            try:
-                return made(cells)
-            except ValueError:      # such as 30 February
-                k = next(k for k, cell in enumerate(cells) if cell and not _exists(cell))
-                raise InputError(f'{path}, {place(k)}, column {name[:40]!r}: {cells[k][:40]!r} is '
-                                 'not a date; correct it or leave the cell empty') from None
+    times = seconds_of(cells, lambda k: f'{path}, {place(k)}, column {name[:40]!r}')
+    if times is not None:
+        return times
     if len(wrong) < _FEW * len(values):
         k = wrong[0]
         raise InputError(f'{path}, {place(k)}, column {name[:40]!r}: {cells[k][:40]!r} is not '

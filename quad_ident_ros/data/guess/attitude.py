@@ -62,8 +62,7 @@ def angles(draft: Draft) -> None:
     if len(names) < len(ANGLE):
         return
     values = draft.values(names)
-    units = {draft.units[name] for name in names}
-    unit = next((unit for unit in ('deg', *UNITS['rad']) if unit in units), angle_unit(values))
+    unit = draft.said_unit('phi', names, UNITS['rad']) or angle_unit(values)
     down = _pitch_down(draft, names, values * factor_of('phi', unit))
     draft.take(EULER, names, unit, role='pose', said=f'roll, pitch, yaw in {unit}'
                + (', pitch with the other sign' if down else ''))
@@ -79,7 +78,7 @@ def rates(draft: Draft) -> None:
     names = draft.found[RATE]
     if names is None or any(name not in draft.free for name in names):
         return
-    values, unit = draft.values(names), draft.unit_of(names, ('rad/s', 'deg/s', 'mrad/s'))
+    values, unit = draft.values(names), draft.said_unit('wx', names, UNITS['rad/s'])
     if not unit and draft.attitude is not None and draft.t is not None:
         turned, measured = draft.turning(draft.attitude, values)
         ratio = ratio_of(measured, turned)

@@ -31,9 +31,10 @@ def time(draft: Draft) -> None:
             f't: no column of a time that rises{_but(found)}; add one in s to the file')
         return
     name = min(rising, key=lambda name: len(draft.names[name]))
-    values, unit = draft.table.columns[name], draft.units[name]
-    if unit not in UNITS['s']:
-        unit = time_unit(values)
+    values, unit = draft.table.columns[name], ''
+    if ':' not in draft.units[name]:     # else how a time of day is written, as hh:mm:ss
+        unit = draft.said_unit('t', [name], UNITS['s'])
+    unit = unit or time_unit(values)
     if not unit:
         draft.guess.doubts.append(f't: the unit of {name!r}')
         unit = 's'

@@ -2,21 +2,23 @@
 # SPDX-License-Identifier: Apache-2.0
 """A guess of what the columns of a table are, while it is made."""
 
-from collections.abc import Container, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 import re
 
 import numpy as np
 
-from quad_ident_ros.data.columns import FORCE, VELOCITY
-from quad_ident_ros.data.guess.names import AXES, BARE, NOT, plain, TURNED, UNITS
+from quad_ident_ros.data.columns import FORCE, POSITION, VELOCITY
+from quad_ident_ros.data.guess.names import AXES, BARE, NO_UNITS, NOT, plain, TURNED
 from quad_ident_ros.data.guess.series import alike, filled, turned
 from quad_ident_ros.data.mapping import Column, factor_of, Mapping
 from quad_ident_ros.data.tabular import Table
+from quad_ident_ros.data.unit_names import unit_by
 
 OVER = 0.1              # s over which turns are compared, so that noise of samples counts little
 SHORTEST = 3            # letters of a name that is counted
 SAME = 0.98             # correlation of two streams of one quantity, as raw and filtered
+FORMATION = 0.2         # of the extent of a flight that two positions in it are apart
 
 
 @dataclass
@@ -47,10 +49,10 @@ class Draft:
         self.names: dict[str, str] = {}
         self.units: dict[str, str] = {}
         for name in table.columns:
-            self.names[name], self.units[name] = plain(name)
+            self.names[name], self.units[name] = plain(name.removeprefix(table.before))
             said = table.units.get(name, '').lower()
             if said:
-                self.units[name] = UNITS.get(said, said)
+                self.units[name] = unit_by(said)
         self.free = [name for name in table.columns if not NOT.search(self.names[name])
                      and np.isfinite(table.columns[name]).sum() >= 2]
         self.t: np.ndarray | None = None            # (N,) s
@@ -102,13 +104,23 @@ class Draft:
         if role and role not in self.guess.roles:
             self.guess.roles.append(role)
 
-    def unit_of(self, names: Sequence[str], known: Container[str]) -> str:
+    def unit_of(self, names: Sequence[str], known: Iterable[str]) -> str:
         """Return the one unit that the names of columns say, '' for none or one not known."""
         units = {self.units[name] for name in names}
         units = {{'deg': 'deg/s', 'rad': 'rad/s'}.get(one, one) if 'deg/s' in known else one
                  for one in units}
         unit = units.pop() if len(units) == 1 else ''
         return unit if unit in known else ''
+
+    def said_unit(self, role: str, names: Sequence[str], known: Iterable[str]) -> str:
+        """Return the unit that the names of columns say, '' for none; doubt one not known."""
+        telling = [name for name in names if self.units[name].lower() not in NO_UNITS]
+        unit = self.unit_of(telling, known) if telling else ''
+        if telling and not unit:
+            said = ', '.join(dict.fromkeys(self.units[name][:20] for name in telling))
+            self.guess.doubts.append(f'{role}: the unit of {together(names)}, which say {said}; '
+                                     f'known are {", ".join(known)}, one for all')
+        return unit
 
     def one(self, pattern: str) -> str | None:
         """Return the column of a pattern; the one of the shortest name where that is clear."""
@@ -165,7 +177,12 @@ class Draft:
         whole = re.compile(AXES[group].format('[wxyz0-4]'))
         if whole.fullmatch(self.names[one[-1]]) and not whole.fullmatch(self.names[other[-1]]):
             return True
-        return alike(self.values(one), self.values(other)) > SAME
+        a, b = self.values(one), self.values(other)
+        if group == POSITION:   # of two vehicles in formation, which move alike
+            apart = np.linalg.norm(np.nanmean(a - b, axis=0))
+            if apart > FORMATION * np.linalg.norm(np.nanstd(a, axis=0)):
+                return False
+        return alike(a, b) > SAME
 
 
 def together(names: Sequence[str]) -> str:

@@ -39,7 +39,7 @@ def positions(draft: Draft) -> None:
     names = draft.found[POSITION]
     if names is None or any(name not in draft.free for name in names):
         return
-    unit = draft.unit_of(names, UNITS['m'])
+    unit = draft.said_unit('px', names, UNITS['m'])
     if not unit and draft.t is not None:
         with np.errstate(all='ignore'):
             speed = np.linalg.norm(np.diff(draft.values(names), axis=0), axis=1) / draft.dt()
@@ -50,12 +50,15 @@ def positions(draft: Draft) -> None:
 
 
 def forces(draft: Draft) -> None:
-    """Take the specific force, in the unit in which it is about gravity."""
+    """Take the specific force, in the unit by name, or else that in which it is about gravity."""
     names = draft.found[FORCE]
     if names is None or any(name not in draft.free for name in names):
         return
     usual = float(np.nanmedian(np.linalg.norm(draft.values(names), axis=1)))
-    for unit, one in (('m/s^2', GRAVITY), ('g', 1.0), ('mg', 1000.0)):
+    said = draft.said_unit('ax', names, UNITS['m/s^2'])
+    if said:
+        usual *= factor_of('ax', said) / GRAVITY
+    for unit, one in ((said, 1.0),) if said else (('m/s^2', GRAVITY), ('g', 1.0), ('mg', 1000.0)):
         if HOVERS[0] * one < usual < HOVERS[1] * one:
             draft.take(FORCE, names, unit, role='specific_force',
                        said=f'specific force in {unit}')
@@ -108,7 +111,7 @@ def velocities(draft: Draft) -> None:
     if names is None or any(name not in draft.free for name in names):
         return
     values = draft.values(names)
-    unit = draft.unit_of(names, UNITS['m/s'])
+    unit = draft.said_unit('vx', names, UNITS['m/s'])
     if not unit:
         fast = float(np.nanquantile(np.abs(values), 0.9))
         place = draft.columns['px'].unit if 'px' in draft.columns else ''

@@ -15,10 +15,11 @@ from quad_ident_ros.data.guess.names import (
     CRAZYFLIE,
     FORCES,
     MOTOR,
+    NO_UNITS,
     REPORTED,
     SPEED,
 )
-from quad_ident_ros.data.mapping import factor_of
+from quad_ident_ros.data.mapping import factor_of, UNITS
 from quad_ident_ros.data.motor_order import about_motors, quad
 from quad_ident_ros.data.record import INPUTS
 from quad_ident_ros.data.signal_kind import kinds_of, TITLES
@@ -40,7 +41,7 @@ def motors(draft: Draft) -> None:
                 and (others or REPORTED.search(draft.names[names[0]]))]
     measured = next((names for names in (*speeds, *reported) if names not in asked), None)
     if measured:
-        values, unit = draft.logged(measured), _unit_of(draft, measured)
+        values, unit = draft.logged(measured), _unit_of(draft, 'rotor1', measured)
         if np.nanmin(values) >= 0 and np.nanmedian(values) * factor_of('rotor1', unit) > SLOWEST:
             draft.take([f'rotor{k}' for k in range(1, len(measured) + 1)], measured, unit,
                        role='rotors', said=f'measured rotor speeds in {unit}')
@@ -57,7 +58,7 @@ def motors(draft: Draft) -> None:
     kinds = kinds_of(values)
     if FORCES.search(draft.names[names[0]]) and list(kinds) != ['normalised']:
         return
-    unit = _unit_of(draft, names) if names in asked else draft.unit_of(names, SPEEDS)
+    unit = _unit_of(draft, 'cmd1', names) if names in asked else draft.unit_of(names, SPEEDS)
     if unit:
         draft.take([f'cmd{k}' for k in range(1, len(names) + 1)], names, unit,
                    role='commands', said=f'rotor speed commands in {unit}')
@@ -72,7 +73,7 @@ def motors(draft: Draft) -> None:
 def battery(draft: Draft) -> None:
     """Take the voltage of the battery."""
     name = draft.one(BATTERY.pattern)
-    if name is None or draft.units[name] == '%':     # of its charge
+    if name is None or draft.units[name] not in (*UNITS['V'], *NO_UNITS):    # as % of its charge
         return
     usual = float(np.nanmedian(draft.table.columns[name]))
     unit = 'mV' if usual > 1000 else 'V'
@@ -80,10 +81,10 @@ def battery(draft: Draft) -> None:
         draft.take(('vbat',), (name,), unit, role='battery', said=f'battery in {unit}')
 
 
-def _unit_of(draft: Draft, names: list[str]) -> str:
+def _unit_of(draft: Draft, role: str, names: list[str]) -> str:
     """Return the unit of rotor speeds by their names, rad/s where these say none."""
     said = (unit for unit in ('krpm', 'rpm') if any(unit in draft.names[name] for name in names))
-    return draft.unit_of(names, SPEEDS) or next(said, 'rad/s')
+    return draft.said_unit(role, names, SPEEDS) or next(said, 'rad/s')
 
 
 def _numbered(draft: Draft, pattern: re.Pattern) -> list[list[str]]:

@@ -7,19 +7,17 @@ import re
 from quad_ident_ros.data.columns import FORCE, POSITION, RATE, VELOCITY
 from quad_ident_ros.data.guess.words import in_english, without_accents
 from quad_ident_ros.data.record import QUATERNION
+from quad_ident_ros.data.unit_names import unit_by
 
 UNIT = re.compile(r'[\[(]\s*([^\])]*)\s*[\])]\s*$')
+_ENTRY = re.compile(r'\d+|[wxyzWXYZ]')
 ENDING = re.compile(r'_(ns|us|usec|ms|msec|s|sec|secs|seconds|mm|cm|m|ft|deg|rad|mrad|dps|radps|'
-                    r'rpm|krpm|hz|g|mv|v)$')
-UNITS = {'usec': 'us', 'µs': 'us', 'msec': 'ms', 'sec': 's', 'secs': 's', 'seconds': 's',
-         'dps': 'deg/s', '°/s': 'deg/s', 'degps': 'deg/s', 'radps': 'rad/s', '°': 'deg',
-         'degrees': 'deg', 'radians': 'rad', 'm/s2': 'm/s^2', 'm/s²': 'm/s^2', 'm/s/s': 'm/s^2',
-         'rad s^-1': 'rad/s', 'm s^-1': 'm/s', 'm s^-2': 'm/s^2', 'meters': 'm', 'volt': 'V',
-         'v': 'V', 'mv': 'mV', "g's": 'g',
-         'u/min': 'rpm', 'tr/min': 'rpm', '1/min': 'rpm', 'min^-1': 'rpm', 'grad': 'deg',
-         'grad/s': 'deg/s', 'sekunden': 's', 'minutes': 'min', 'feet': 'ft', 'fps': 'ft/s',
-         'kmh': 'km/h', 'kph': 'km/h', 'mi/h': 'mph', 'kt': 'kn', 'knots': 'kn',
-         'hz': 'Hz', 'rps': 'Hz', 'rev/s': 'Hz', 'u/s': 'Hz', 'tr/s': 'Hz'}
+                    r'rpm|krpm|hz|g|mv|v|(?<=time_)min|minutes|(?<=time_)h|hours)$')
+NO_UNITS = frozenset(('', '-', '1', 'world', 'body', 'global', 'local', 'inertial', 'ned', 'enu',
+                      'frd', 'flu', 'nwu', 'raw', 'filtered', 'estimated', 'measured', 'float',
+                      'float32', 'float64', 'double', 'utc', 'unix', 'epoch', 'gps'))
+"""What stands in brackets behind names, or in a line of units, and is none."""
+
 NOT = re.compile(r'(^|_)(sp|setpoint|des|desired|ref|reference|target|goal|cov|covariance|var|'
                  r'std|err|error|raw|bias|offset|mag)(_|$)|^b_[awg]_')
 """Of names that are not what was measured; b_w and b_a are biases."""
@@ -100,8 +98,8 @@ def plain(name: str) -> tuple[str, str]:
     """Return a name in small letters and English, _ between its parts, and its unit."""
     said = ''
     match = UNIT.search(name)
-    # q[0] is an entry of an array, gyro.x [deg/s] has a unit.
-    if match and not match.group(1).isdigit():
+    # q[0] and q(w) are entries of an array, gyro.x [deg/s] has a unit.
+    if match and not _ENTRY.fullmatch(match.group(1)):
         name, said = name[:match.start()], match.group(1).strip().lower()
     name = re.sub(r'([a-z0-9])([A-Z])', r'\1_\2', name.strip())
     name = re.sub(r'[^a-z0-9]+', '_', without_accents(name).lower()).strip('_')
@@ -109,4 +107,4 @@ def plain(name: str) -> tuple[str, str]:
     if not said and match and len(name) > len(match.group()):
         name, said = name[:match.start()], match.group(1)
     name = _AFTER.sub(r'_\2_\1', in_english(name))
-    return name, UNITS.get(said, said)
+    return name, unit_by(said)

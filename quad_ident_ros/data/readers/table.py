@@ -57,7 +57,7 @@ def records_from(path: Path, table: Table, mapping: Mapping | None) -> list[Flig
     if mapping.topics or mapping.instances:
         raise InputError(f'{path}: topics and instances are for bags and logs; a mapping of a '
                          'table has columns: which column of the file is what')
-    return [record for name, part in by_vehicle(table).items()
+    return [record for name, part in by_vehicle(table, bool(mapping.columns)).items()
             for record in _of_vehicle(path, part, mapping, name)]
 
 

@@ -205,6 +205,17 @@ def test_two_topics_for_one_role_are_listed_with_the_lines_to_write(tmp_path):
             'rate: {topic: /imu}')
 
 
+@pytest.mark.parametrize('names', [('/uav1', '/uav2'), ('/mocap/cf3', '/cf12')])
+def test_topics_of_two_vehicles_are_no_flight(tmp_path, names):
+    """Each role has one topic; the rates of one were joined to the poses of the other."""
+    one, other = names
+    path = write2(tmp_path / 'bag', [*odometry(SMALL, f'{one}/odom'),
+                                     *imu(SMALL, f'{other}/imu')])
+    refused(path, 'of several vehicles', f'{one}/odom', f'{other}/imu', '--mapping')
+    path = write2(tmp_path / 'one', [*odometry(SMALL, f'{one}/odom'), *imu(SMALL, f'{one}/imu')])
+    agrees(load(path), PLACE, RATE)
+
+
 def test_what_is_asked_for_is_no_state(tmp_path):
     """Setpoints are no measurements, and raw measurements are the second choice."""
     path = write2(tmp_path / 'bag', [

@@ -175,6 +175,9 @@ def test_motors_that_are_not_those_of_the_record_are_refused(tmp_path):
     refused(with_outputs(tmp_path, np.round(65535 * SHARES)), 'pwm from 1000 to 2000',
             'duty16 by their size', vehicle=vehicle)
     refused(with_outputs(tmp_path, SHARES), 'normalised by their size', vehicle=vehicle)
+    for kind, high in (('duty16', 65535.0), ('percent', 100.0)):
+        refused(with_outputs(tmp_path, SHARES), f'{kind} from 0 to', 'normalised by their size',
+                vehicle=replace(VEHICLE, motors=Motors(kind, 0.0, high)))
 
 
 def test_outputs_that_are_not_finite_are_motors_that_are_off():

@@ -78,6 +78,8 @@ def test_units_are_told_by_names_and_values(tmp_path):
 
 @pytest.mark.parametrize('group, names, unit, factor', [
     (PLACE, ('x', 'y', 'z'), 'ft', 0.3048), (PLACE, ('x', 'y', 'z'), 'feet', 0.3048),
+    (PLACE, ('x', 'y', 'z'), 'in', 0.0254), (FORCE, ('acc_x', 'acc_y', 'acc_z'), 'cm/s2', 0.01),
+    (FORCE, ('acc_x', 'acc_y', 'acc_z'), 'mm/s²', 1e-3),
     (SPEED, ('vel_x', 'vel_y', 'vel_z'), 'km/h', 1 / 3.6),
     (SPEED, ('vel_x', 'vel_y', 'vel_z'), 'ft/s', 0.3048),
     (SPEED, ('vel_x', 'vel_y', 'vel_z'), 'MPH', 0.44704),
@@ -90,6 +92,37 @@ def test_a_unit_in_the_name_is_read_though_it_is_no_usual_one(tmp_path, group, n
     columns = {name: values for name, values in columns.items() if name not in group}
     columns |= named([f'{name} [{unit}]' for name in names], FLIGHT.stack(*group) / factor)
     close(load(table(tmp_path, columns)))
+
+
+@pytest.mark.parametrize('changes, role', [
+    ({'pos_x': 'pos_x [furlong]'}, 'px: the unit of .*, which say furlong; known are m, mm'),
+    ({'pos_x': 'pos_x [m]', 'pos_y': 'pos_y [mm]'}, 'px: the unit of .*, which say m, mm; '),
+    ({'vel_y': 'vel_y [ly/h]'}, 'vx: '), ({'gyro_z': 'gyro_z [turns]'}, 'wx: '),
+    ({'acc_x': 'acc_x [lb]'}, 'ax: '), ({'timestamp': 'timestamp [ticks]'}, 't: ')])
+def test_a_unit_that_is_not_known_or_not_one_for_all_is_refused(tmp_path, changes, role):
+    columns = {changes.get(name, name): values for name, values in others().items()}
+    with pytest.raises(InputError, match=role):
+        load(table(tmp_path, columns))
+
+
+@pytest.mark.parametrize('head, factor', [
+    ('t [h]', 1 / 3600), ('time_hours', 1 / 3600), ('time_min', 1 / 60), ('time [UTC]', 1.0)])
+def test_a_time_in_hours_and_what_is_no_unit(tmp_path, head, factor):
+    columns = {head: FLIGHT.t * factor, **named(EVERY, FLIGHT.stack(*EVERY))}
+    columns = {f'{name} [world]' if name in PLACE else name: values
+               for name, values in columns.items()}
+    read = load(table(tmp_path, columns))
+    close(read)
+    np.testing.assert_allclose(read.t, FLIGHT.t, atol=1e-6)
+
+
+def test_an_acceleration_without_gravity_in_its_unit_is_no_specific_force_in_another(tmp_path):
+    columns = others() | named(('acc_x', 'acc_y', 'acc_z'), np.tile([0.0, 0.0, 1.0],
+                                                                   (len(FLIGHT), 1)))
+    columns = {f'{name} [m/s^2]' if name.startswith('acc') else name: values
+               for name, values in columns.items()}
+    read = load(table(tmp_path, columns))
+    assert not read.has('az') and 'not taken, an acceleration without gravity' in said(read)
 
 
 def test_angles_and_rotor_speeds_have_the_unit_of_their_names_and_a_charge_is_no_voltage(tmp_path):
@@ -114,6 +147,45 @@ def test_separators_and_decimal_commas(tmp_path, separator, comma):
     assert ('decimal commas' in said(read)) == comma
 
 
+def test_decimal_commas_in_quotes_between_commas(tmp_path):
+    """As pandas writes them with decimal=',' alone."""
+    columns = {'timestamp': FLIGHT.t, **named(PLACE, FLIGHT.stack(*PLACE)), 'vbat': FLIGHT.t + 12}
+    path = tmp_path / 'f.csv'
+    path.write_text(','.join(columns) + '\n' + ''.join(
+        ','.join(f'"{value!s}"'.replace('.', ',') for value in row) + '\n'
+        for row in zip(*columns.values(), strict=True)))
+    read = load(path)
+    close(read, names=PLACE)
+    assert 'decimal commas' in said(read)
+
+
+@pytest.mark.parametrize('digits', [2, 3])
+def test_commas_between_thousands_are_no_decimal_ones(tmp_path, digits):
+    """1,403.25 was read as 1.40325."""
+    columns = {'t [s]': FLIGHT.t, **named(PLACE, FLIGHT.stack(*PLACE)),
+               'm1': 1300 + FLIGHT.t}
+    path = tmp_path / 'f.csv'
+    path.write_text(';'.join(columns) + '\n' + ''.join(
+        ';'.join(f'{value:,.{digits}f}' for value in row) + '\n'
+        for row in zip(*columns.values(), strict=True)))
+    read = load(path)
+    close(read, names=PLACE, atol=0.01)
+    assert not read.has('m1') and 'columns of text are left out: m1' in said(read)
+
+
+@pytest.mark.parametrize('missing', ['nan', ''])
+def test_a_flight_may_begin_with_rows_that_are_missing(tmp_path, missing):
+    """As before a first fix: more of them than lines in which the numbers are looked for."""
+    columns = {'timestamp': FLIGHT.t, **named(EVERY, FLIGHT.stack(*EVERY))}
+    rows = [[t, *(value if k >= 100 else missing for value in row)]
+            for k, (t, *row) in enumerate(zip(*columns.values(), strict=True))]
+    path = tmp_path / 'f.csv'
+    path.write_text('\n'.join(','.join(map(str, row)) for row in [list(columns), *rows]) + '\n')
+    read = load(path)
+    close(read, FLIGHT.slice(100, None))
+    assert read.t[0] == FLIGHT.t[100]
+
+
 def test_a_flight_record_between_semicolons_keeps_its_thrust_and_moments(tmp_path):
     moments = {name: np.linspace(low, high, len(FLIGHT)) for name, low, high in (
         ('u1', 5.0, 9.0), ('u2', -0.1, 0.1), ('u3', -0.1, 0.1), ('u4', -0.01, 0.01))}
@@ -134,6 +206,10 @@ def test_a_line_of_units_and_lines_above_the_header(tmp_path):
                      + ['m/s^2'] * 3 + ['us'] * 4 + ['V'])
     (tmp_path / 'g.csv').write_text('\n'.join([rows[2], units, *rows[3:]]) + '\n')
     close(load(tmp_path / 'g.csv'))
+    words = (units.replace('m/s^2', 'm/sec^2').replace('rad/s', 'radians/sec')
+             .replace(',m,', ',meters,').replace('V', 'Volts').replace('us', 'microseconds', 1))
+    (tmp_path / 'h.csv').write_text('\n'.join([rows[2], words, *rows[3:]]) + '\n')
+    close(load(tmp_path / 'h.csv'))
 
 
 def test_aerospace_frames_are_told_by_where_up_is(tmp_path):
@@ -318,9 +394,20 @@ def test_our_own_format_is_read_as_ever(tmp_path):
 def test_names_and_kinds():
     assert plain('Gyro X [deg/s]') == ('gyro_x', 'deg/s')
     assert plain('stateEstimate.x') == ('state_estimate_x', '')
-    assert plain('q[0]') == ('q_0', '') and plain('time_us') == ('time', 'us')
+    assert plain('q[0]') == ('q_0', '') and plain('pos(X)') == ('pos_x', '')
+    assert plain('time_us') == ('time', 'us')
     assert time_unit(np.arange(0, 10, 0.01)) == 's'
     assert time_unit(np.arange(0, 1e7, 1e4)) == 'us'
+
+
+@pytest.mark.parametrize('said, unit', [
+    ('millisecond', 'ms'), ('usec', 'us'), ('µs', 'us'), ('Seconds', 's'), ('Meters', 'm'),
+    ('centimetres', 'cm'), ('m/s²', 'm/s^2'), ('cm/s2', 'cm/s^2'), ('m/s/s', 'm/s^2'),
+    ('m s-2', 'm/s^2'), ('rad s^-1', 'rad/s'), ('rad·s-1', 'rad/s'), ('deg/sec', 'deg/s'),
+    ('°/s', 'deg/s'), ('degrees', 'deg'), ('Degrees/second', 'deg/s'), ('meters/second', 'm/s'),
+    ('min^-1', 'rpm'), ('mrad/s', 'mrad/s'), ('feet', 'ft')])
+def test_units_may_be_spelt_in_words(said, unit):
+    assert plain(f'x ({said})') == ('x', unit)
 
 
 def test_parquet_is_read_by_the_same_rules(tmp_path):
@@ -353,6 +440,25 @@ def test_columns_of_other_types_in_parquet_are_numbers(tmp_path):
     np.testing.assert_allclose(read.t - read.t[0], FLIGHT.t, atol=1e-9)
     np.testing.assert_allclose(read.columns['vbat'], FLIGHT.columns['vbat'], atol=1e-3)
     assert 'columns of text are left out: tags' in said(read)
+
+
+def test_times_by_type_in_parquet_have_no_other_unit(tmp_path):
+    """The unit of their type, us, made 6 s of flight 6000 s."""
+    pyarrow = pytest.importorskip('pyarrow', reason='pyarrow is not installed')
+    from pyarrow import parquet
+    columns = {name: pyarrow.array(values) for name, values in others().items()}
+    columns['timestamp'] = pyarrow.array(
+        np.round(1e6 * (1.7e9 + FLIGHT.t)).astype('datetime64[us]'))
+    path = tmp_path / 'f.parquet'
+    parquet.write_table(pyarrow.table(columns), path)
+    close(load(path))
+    named_so = {'px': 'pos_x', 'py': 'pos_y', 'pz': 'pos_z'}
+    for unit in ({}, {'unit': 'us'}):
+        refused(path, "column 'timestamp' holds times by its type", 'write unit: ns', mapping=(
+            mapping_from({'columns': {'t': {'column': 'timestamp', **unit}, **named_so}}, 'm')))
+    mapping = mapping_from({'columns': {'t': {'column': 'timestamp', 'unit': 'ns'}, **named_so}},
+                           'm')
+    close(load(path, mapping), names=PLACE)
 
 
 def test_an_index_of_times_in_parquet_needs_no_name(tmp_path):

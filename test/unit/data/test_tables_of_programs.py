@@ -188,6 +188,33 @@ def test_a_date_that_does_not_exist_is_named(tmp_path):
         load(path)
 
 
+@pytest.mark.parametrize('stamp', [
+    '27.11.2026 13:00:{}', '07.11.2026 13:00:{}', '27/11/2026 13:00:{}', '11/27/2026 1:00:{} PM',
+    '2026/11/27 13:00:{}', '11/11/2026, 01:00:{} p.m.'])
+def test_dates_in_the_order_of_a_country(tmp_path, stamp):
+    """They were columns of text, and the table had no time."""
+    rows = zip(T, FLIGHT.stack(*PLACE, *Q).tolist(), strict=True)
+    path = tmp_path / 'dates.csv'
+    path.write_text('when;x;y;z;qw;qx;qy;qz\n' + ''.join(
+        f'{stamp.format(f"{t:09.6f}")};{";".join(map(repr, row))}\n' for t, row in rows))
+    read = load(path)
+    same(read, PLACE, Q)
+    day = 7 if stamp.startswith('07') else 11 if stamp.startswith('11/11') else 27
+    assert read.info['start_ns'] == np.datetime64(f'2026-11-{day:02}T13:00', 'ns').astype(int)
+
+
+@pytest.mark.parametrize(('stamp', 'why'), [
+    ('11/10/2026 1:00:{} PM', 'may have the day first or the month; write dates as 2026-11-27'),
+    ('27.11.26 13:00:{}', 'has no year of four digits'),
+    ('31.11.2026 13:00:{}', 'is not a date')])
+def test_dates_in_doubt_are_refused(tmp_path, stamp, why):
+    path = tmp_path / 'dates.csv'
+    path.write_text('time,x,y,z\n' + ''.join(
+        f'{stamp.format(f"{k:02}")},0.{k},1,2\n' for k in range(30)))
+    with pytest.raises(InputError, match=rf"dates.csv, line 2, column 'time': '.* {why}"):
+        load(path)
+
+
 def test_an_index_that_counts_rows_is_no_time(tmp_path):
     found = {'': 2.0 * np.arange(len(T)), 'timestamp': T,
              **columns('', 'xyz', PLACE), **named(Q, FLIGHT.stack(*Q))}
