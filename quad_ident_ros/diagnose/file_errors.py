@@ -8,7 +8,6 @@ these are off, so are the parameters, however long the flights are.
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 from scipy.linalg import block_diag
@@ -59,10 +58,17 @@ def with_constants(normal: Normal, deviations: np.ndarray, size: np.ndarray
     # One scatter for all, the largest: what scales the whole motion stays in proportion.
     widest = float(scatter_of(normal).max())
     information, gradient = normal.information / widest, normal.gradient / widest
-    known = np.append(np.zeros(count), deviations ** -2.0)
     white = Normal(information, gradient, normal.cost, normal.scores[:0])
     held = covariance_of(first_of(white, count), size[:count])
-    whole = covariance_of(replace(white, information=information + np.diag(known)), size)
-    shift = whole @ gradient
-    shift[:count] -= held @ gradient[:count]
-    return held, whole + np.outer(shift, shift)
+    # The columns follow the constants, of which flights show what the columns do not take up. In
+    # units of the deviations: beside a tiny one no other number would be told apart from zero.
+    moved = -held @ information[:count, count:]
+    shown = information[count:, count:] + information[count:, :count] @ moved
+    units = np.outer(deviations, deviations)
+    known = units * np.linalg.inv(shown * units + np.eye(len(deviations)))
+    shift = known @ (gradient[count:] + moved.T @ gradient[:count])
+    known = known + np.outer(shift, shift)
+    follow = np.vstack([moved, np.eye(len(deviations))])
+    whole = follow @ known @ follow.T
+    whole[:count, :count] += held
+    return held, whole

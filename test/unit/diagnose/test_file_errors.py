@@ -69,6 +69,14 @@ def test_a_parameter_that_stands_for_a_constant_has_its_deviation():
                                             [-2.0 * 0.09, 0.09]]))
 
 
+def test_a_constant_that_is_known_exactly_hides_none_of_the_others():
+    # Beside the constant of 0.3 a tiny one, as a drag of a millionth.
+    slopes, weight = np.array([1.0, 2.0, 1.0]), 1e4
+    known = Normal(weight * np.outer(slopes, slopes), np.zeros(3), 0.0, np.zeros((1, 3)))
+    _, whole = with_constants(known, np.array([0.3, 1e-9]), np.ones(3))
+    assert np.sqrt(np.diag(whole)) == pytest.approx([np.hypot(0.01, 0.6), 0.3, 1e-9])
+
+
 def test_what_flights_would_rather_have_counts_as_an_error():
     # The constant shows by itself, 0.2 off; the parameter goes with it.
     weight = 1e4
