@@ -3,10 +3,12 @@
 """What the constants of the vehicle file leave open is in the standard errors."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from quad_ident_ros.diagnose import bench
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.diagnose.file_errors import with_constants
 from quad_ident_ros.flight.fly import fly_closed_loop
@@ -57,6 +59,22 @@ def test_a_file_that_knows_its_constants_leaves_nothing_open(flights):
             **{f'rotors[{k}].position': (1e-5,) * 3 for k in range(4)}}
     value = offset(flights, file_of(1.0, **sure))
     assert abs(value.value - OFFSET) < 4.0 * value.std < 0.02 * OFFSET
+
+
+def test_arms_whose_error_is_taken_out_count_as_those_of_the_file(monkeypatch):
+    def errors(chosen, fit, *_args):
+        return np.full(len(fit.columns), 0.1 if 'arms' in chosen else 0.2)
+
+    monkeypatch.setattr(bench, 'errors_by_file', errors)
+    offset, arms, gyro = (INDEX[name] for name in (
+        'com_offset.x', 'inertia_mismatch.arms_x', 'rotor_gyro.rotor_inertia'))
+    best, named = (SimpleNamespace(chosen=chosen, estimate=SimpleNamespace(columns=columns))
+                   for chosen, columns in ((('offset', 'arms', 'gyro'), [offset, arms, gyro]),
+                                           (('offset',), [offset])))
+    selection = SimpleNamespace(best=best, sizes=(0.0, 0.0), joint=SimpleNamespace(form_error=0.0))
+    found = bench.Bench([], (), VEHICLE, selection, None, None).errors_by_file(named)
+    # An error of the arms is one of the file itself.
+    assert found == {offset: 0.2, gyro: 0.1}
 
 
 def test_a_parameter_that_stands_for_a_constant_has_its_deviation():
