@@ -128,3 +128,13 @@ def test_arms_are_known_as_well_as_the_places_of_the_rotors(axis):
     # The factor that fits best to places with independent errors of 1 mm.
     assert found[f'inertia_mismatch.arms_{"xy"[axis]}'] == pytest.approx(
         0.001 / np.linalg.norm(places))
+
+
+def test_arms_of_a_plus_are_known_by_the_rotors_that_are_along_them():
+    plus = load_vehicle('paper_quadrotor')
+    stated = {f'rotors[{k}].position': (0.001, None, None) if k % 2 == 0 else (None, 0.001, None)
+              for k in range(4)}
+    found = constants_behind(replace(plus, uncertainty=stated), [], 0.05, 0.2)
+    for axis in 'xy':
+        assert found[f'inertia_mismatch.arms_{axis}'] == pytest.approx(
+            0.001 / np.sqrt(2.0) / plus.arm_length)
