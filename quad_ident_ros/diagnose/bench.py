@@ -13,6 +13,7 @@ from quad_ident_ros.diagnose import gap as gaps
 from quad_ident_ros.diagnose import input_errors
 from quad_ident_ros.diagnose.candidates import Candidate
 from quad_ident_ros.diagnose.evidence import key_of
+from quad_ident_ros.diagnose.file_errors import errors_by_file
 from quad_ident_ros.diagnose.fitted import (
     columns_at_bounds,
     effects_in,
@@ -27,7 +28,7 @@ from quad_ident_ros.diagnose.selection import Selection
 from quad_ident_ros.effects.registry import EFFECTS, PLACES
 from quad_ident_ros.greybox.estimate import Estimate
 from quad_ident_ros.greybox.linear import Slopes, slopes_at, WRENCH
-from quad_ident_ros.greybox.parameters import nominal, SPLIT
+from quad_ident_ros.greybox.parameters import NAMES, nominal, SPLIT
 from quad_ident_ros.model.vehicle import Vehicle
 
 
@@ -274,18 +275,21 @@ class Bench:
                 | {column: float(whole if column in out else error) for column, error, whole
                    in zip(best.columns, errors, self.selection.errors, strict=True)})
 
-    def errors_by_file(self) -> dict[int, float]:
+    def errors_by_file(self, model: Model) -> dict[int, float]:
         """
-        Return {column: standard error} that the constants of the file add to the best set's.
+        Return {column: standard error} that constants of the file add: a Model's, and others'.
 
-        What differs from a constant itself, as a factor on the inertia, counts from the file.
+        Those of the best set only where the model has not the column: a constant that is free
+        there is that of the file in a model without that effect. What differs from a constant
+        itself, as a factor on the inertia, counts from the file.
         """
-        best = self.selection.best
-        relative = {column for cause in best.causes if EFFECTS[cause.effect].scale_group
-                    for column in cause.columns}
-        return {column: float(error) for column, error in
-                zip(best.estimate.columns, self.selection.by_file, strict=True)
-                if column not in relative}
+        best, found = self.selection.best, dict[int, float]()
+        for chosen, fit in {best.chosen: best.estimate, model.chosen: model.estimate}.items():
+            errors = errors_by_file(chosen, fit, self.flights, self.vehicle, self.selection.sizes,
+                                    self.selection.joint.form_error, self.rules)
+            found |= dict(zip(fit.columns, errors.tolist(), strict=True))
+        return {column: error for column, error in found.items()
+                if not EFFECTS[NAMES[column].split('.')[0]].scale_group}
 
     def taken_out(self, model: Model) -> list[int]:
         """Return the columns of the best set's effects that a Model has not, but one tied to."""

@@ -8,14 +8,14 @@ these are off, so are the parameters, however long the flights are.
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 from scipy.linalg import block_diag
 
-from quad_ident_ros.diagnose.fitted import distances_of, Fitted
+from quad_ident_ros.diagnose.fitted import distances_of
 from quad_ident_ros.diagnose.frame import frame_at, normal_at
 from quad_ident_ros.diagnose.rules import Rules
+from quad_ident_ros.greybox.estimate import Estimate
 from quad_ident_ros.greybox.flights import Flight
 from quad_ident_ros.greybox.normal import covariance_of, first_of, marginal, Normal, scatter_of
 from quad_ident_ros.greybox.nuisances import Layout
@@ -23,21 +23,21 @@ from quad_ident_ros.greybox.parameters import constants_behind, INDEX, limits
 from quad_ident_ros.model.vehicle import Vehicle
 
 
-def errors_by_file(fitted: Fitted, flights: Sequence[Flight], vehicle: Vehicle,
+def errors_by_file(chosen: tuple, fit: Estimate, flights: Sequence[Flight], vehicle: Vehicle,
                    sizes: tuple[float, float], form_error: float, rules: Rules) -> np.ndarray:
     """
     Return the standard error (C,) that the constants of the file add to each column of a set.
 
     Args: sizes: force (N) and moment (N m) of the discrepancy, and form_error, as of normal_at.
     """
-    fit, count = fitted.estimate, len(fitted.estimate.columns)
+    count = len(fit.columns)
     behind = constants_behind(vehicle, fit.columns, rules.constant_error, rules.drag_error)
     if not behind or not count:
         return np.zeros(count)
     columns = [*fit.columns, *(INDEX[name] for name in behind)]
     layout = Layout(columns, fit.nuisances.columns, len(fit.nuisances.values))
     frame = frame_at(list(flights), vehicle, fit, layout.wanted, rules)
-    normal = normal_at(frame, fit, layout, distances_of(fitted.chosen, fit, vehicle), sizes,
+    normal = normal_at(frame, fit, layout, distances_of(chosen, fit, vehicle), sizes,
                        form_error)
     precision = block_diag(np.zeros((len(columns), len(columns))), fit.nuisances.precision)
     size = limits(vehicle)[2, columns]
@@ -59,10 +59,17 @@ def with_constants(normal: Normal, deviations: np.ndarray, size: np.ndarray
     # One scatter for all, the largest: what scales the whole motion stays in proportion.
     widest = float(scatter_of(normal).max())
     information, gradient = normal.information / widest, normal.gradient / widest
-    known = np.append(np.zeros(count), deviations ** -2.0)
     white = Normal(information, gradient, normal.cost, normal.scores[:0])
     held = covariance_of(first_of(white, count), size[:count])
-    whole = covariance_of(replace(white, information=information + np.diag(known)), size)
-    shift = whole @ gradient
-    shift[:count] -= held @ gradient[:count]
-    return held, whole + np.outer(shift, shift)
+    # The columns follow the constants, of which flights show what the columns do not take up. In
+    # units of the deviations: beside a tiny one no other number would be told apart from zero.
+    moved = -held @ information[:count, count:]
+    shown = information[count:, count:] + information[count:, :count] @ moved
+    units = np.outer(deviations, deviations)
+    known = units * np.linalg.inv(shown * units + np.eye(len(deviations)))
+    shift = known @ (gradient[count:] + moved.T @ gradient[:count])
+    known = known + np.outer(shift, shift)
+    follow = np.vstack([moved, np.eye(len(deviations))])
+    whole = follow @ known @ follow.T
+    whole[:count, :count] += held
+    return held, whole

@@ -10,7 +10,6 @@ from scipy.linalg import block_diag
 from quad_ident_ros.diagnose.candidates import Candidate, nuisance_candidates
 from quad_ident_ros.diagnose.discrepancy import AXES, log_likelihood, scales
 from quad_ident_ros.diagnose.evidence import beam, key_of, Quadratic
-from quad_ident_ros.diagnose.file_errors import errors_by_file
 from quad_ident_ros.diagnose.fitted import (
     distances_of,
     effects_in,
@@ -370,12 +369,10 @@ class _Search:
                          self.quadratic.scatter, self.rules)
         force, moment = (float(grid[k]) for grid, k in zip(self.grids, self.best.sizes,
                                                            strict=True))
-        by_file = errors_by_file(self.best, self.flights, self.vehicle, (force, moment),
-                                 joint.form_error, self.rules)
         return Selection(fitted[0], fitted,
                          posteriors(fitted, self.ranked, self.all_causes, set(self.tried),
                                     self.rules),
-                         self.quadratic, self.rows, self.noise, joint, by_file, self.slow)
+                         self.quadratic, self.rows, self.noise, joint, (force, moment), self.slow)
 
 
 def _plain(chosen: tuple) -> bool:

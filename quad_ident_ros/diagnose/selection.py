@@ -22,9 +22,9 @@ class Selection:
     best: the simplest Fitted of those with about the most evidence; fitted: it and the others
     that were refitted; posterior: probability of each candidate effect; quadratic, rows: the cost
     around the best, with all candidates free; noise: per flight (12,); joint: the Joint of the
-    columns of the best; by_file (C,): the standard error that the constants of the vehicle file
-    add to these; slow (6,): the force and moment that nothing explains, by which
-    autocorrelated errors counted less in the fits, or None.
+    columns of the best; sizes: force (N) and moment (N m) of its discrepancy; slow (6,): the force
+    and moment that nothing explains, by which autocorrelated errors counted less in the fits, or
+    None.
     """
 
     best: Fitted
@@ -34,7 +34,7 @@ class Selection:
     rows: dict
     noise: list
     joint: Joint
-    by_file: np.ndarray
+    sizes: tuple[float, float]
     slow: np.ndarray | None = None
 
     @property

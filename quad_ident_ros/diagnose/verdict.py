@@ -130,7 +130,7 @@ def _ranking(bench: Bench, judged: Judgement, causes: tuple, total: dict,
              ruled_out: Sequence[str]) -> tuple[Ranked, ...]:
     """Return every effect, the named ones by contribution, then the most probable first."""
     z0, model, best = nominal(bench.vehicle), judged.model, bench.selection.best
-    errors, by_file = bench.errors(model), bench.errors_by_file()
+    errors, by_file = bench.errors(model), bench.errors_by_file(model)
     track = bench.tracks[-1]
     nuisance = model.vectors[-1] - model.z
     before = gaps.gap([gaps.ends(track, bench.vehicle, z0 + nuisance, bench.horizon)])

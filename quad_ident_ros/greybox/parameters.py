@@ -86,8 +86,9 @@ def _of_arms(vehicle: Vehicle, axis: str, share: float) -> float:
     """Return the deviation of the factor on the arms along an axis by those of the places."""
     places = np.array([rotor.position['xyz'.index(axis)] for rotor in vehicle.rotors])
     known = stated(vehicle)
-    each = np.array([known.get(f'rotors[{k}].position_{axis}', np.nan)
-                     for k in range(len(places))])
+    # A factor leaves a place of zero where it is, however well that is known.
+    each = np.array([known.get(f'rotors[{k}].position_{axis}', np.nan if place else 0.0)
+                     for k, place in enumerate(places)])
     power = float(places @ places)
     if np.isnan(each).any() or power == 0.0:
         return share

@@ -3,10 +3,12 @@
 """What the constants of the vehicle file leave open is in the standard errors."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from quad_ident_ros.diagnose import bench
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.diagnose.file_errors import with_constants
 from quad_ident_ros.flight.fly import fly_closed_loop
@@ -59,6 +61,22 @@ def test_a_file_that_knows_its_constants_leaves_nothing_open(flights):
     assert abs(value.value - OFFSET) < 4.0 * value.std < 0.02 * OFFSET
 
 
+def test_arms_whose_error_is_taken_out_count_as_those_of_the_file(monkeypatch):
+    def errors(chosen, fit, *_args):
+        return np.full(len(fit.columns), 0.1 if 'arms' in chosen else 0.2)
+
+    monkeypatch.setattr(bench, 'errors_by_file', errors)
+    offset, arms, gyro = (INDEX[name] for name in (
+        'com_offset.x', 'inertia_mismatch.arms_x', 'rotor_gyro.rotor_inertia'))
+    best, named = (SimpleNamespace(chosen=chosen, estimate=SimpleNamespace(columns=columns))
+                   for chosen, columns in ((('offset', 'arms', 'gyro'), [offset, arms, gyro]),
+                                           (('offset',), [offset])))
+    selection = SimpleNamespace(best=best, sizes=(0.0, 0.0), joint=SimpleNamespace(form_error=0.0))
+    found = bench.Bench([], (), VEHICLE, selection, None, None).errors_by_file(named)
+    # An error of the arms is one of the file itself.
+    assert found == {offset: 0.2, gyro: 0.1}
+
+
 def test_a_parameter_that_stands_for_a_constant_has_its_deviation():
     # The residual shows a parameter and twice a constant, whose sum alone is known, to 0.01.
     slopes, weight = np.array([1.0, 2.0]), 1e4
@@ -67,6 +85,14 @@ def test_a_parameter_that_stands_for_a_constant_has_its_deviation():
     assert held == pytest.approx(np.array([[1.0 / weight]]))
     assert whole == pytest.approx(np.array([[1.0 / weight + 4.0 * 0.09, -2.0 * 0.09],
                                             [-2.0 * 0.09, 0.09]]))
+
+
+def test_a_constant_that_is_known_exactly_hides_none_of_the_others():
+    # Beside the constant of 0.3 a tiny one, as a drag of a millionth.
+    slopes, weight = np.array([1.0, 2.0, 1.0]), 1e4
+    known = Normal(weight * np.outer(slopes, slopes), np.zeros(3), 0.0, np.zeros((1, 3)))
+    _, whole = with_constants(known, np.array([0.3, 1e-9]), np.ones(3))
+    assert np.sqrt(np.diag(whole)) == pytest.approx([np.hypot(0.01, 0.6), 0.3, 1e-9])
 
 
 def test_what_flights_would_rather_have_counts_as_an_error():
@@ -102,3 +128,13 @@ def test_arms_are_known_as_well_as_the_places_of_the_rotors(axis):
     # The factor that fits best to places with independent errors of 1 mm.
     assert found[f'inertia_mismatch.arms_{"xy"[axis]}'] == pytest.approx(
         0.001 / np.linalg.norm(places))
+
+
+def test_arms_of_a_plus_are_known_by_the_rotors_that_are_along_them():
+    plus = load_vehicle('paper_quadrotor')
+    stated = {f'rotors[{k}].position': (0.001, None, None) if k % 2 == 0 else (None, 0.001, None)
+              for k in range(4)}
+    found = constants_behind(replace(plus, uncertainty=stated), [], 0.05, 0.2)
+    for axis in 'xy':
+        assert found[f'inertia_mismatch.arms_{axis}'] == pytest.approx(
+            0.001 / np.sqrt(2.0) / plus.arm_length)

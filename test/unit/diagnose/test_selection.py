@@ -39,7 +39,7 @@ def fitted(chosen, value, error, evidence):
 def selection(*sets, least=0.0, sensors=0.0):
     covariance = np.array([[least ** 2]])
     joint = Joint(covariance, np.array([[sensors ** 2]]), (), covariance)
-    return Selection(sets[0], sets, {}, None, {}, [], joint, np.zeros(1))
+    return Selection(sets[0], sets, {}, None, {}, [], joint, (0.0, 0.0))
 
 
 def errors(*sets, least=0.0):
