@@ -55,7 +55,7 @@ def test_a_log_gives_the_flight_in_enu_and_flu(tmp_path):
 
 
 def test_speeds_of_rotors_that_turn_in_reverse_have_no_sign(tmp_path):
-    """DroneCAN reports them below zero, and they were refused."""
+    """Those of DroneCAN are below zero, and were refused."""
     messages = [(name, (*values[:2], -values[2], *values[3:])) if name == 'ESC' and values[1] % 2
                 else (name, values) for name, values in copter(SMALL, OUTPUTS)]
     read = load(file(tmp_path, messages), PWM, VEHICLE)

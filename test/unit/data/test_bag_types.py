@@ -154,7 +154,7 @@ def test_a_definition_of_another_length_is_said(tmp_path):
 
 @pytest.mark.parametrize('signs', [(1, 1, 1, 1), (1, -1, 1, -1)], ids=['none', 'in reverse'])
 def test_measured_speeds_become_rotor_speeds(tmp_path, signs):
-    """MAVLink has those of rotors that turn in reverse below zero."""
+    """Those of rotors that turn in reverse are below zero in MAVLink."""
     rpm = np.round(SPEEDS * 60 / (2 * np.pi)).astype(int) * signs
     for write in (write2, write_old):
         read = load(write(tmp_path / write.__name__, [*odometry(SMALL), *esc_status(SMALL, rpm)]))

@@ -14,8 +14,8 @@ from quad_ident_ros.data.load import contents_of, load, load_all
 from quad_ident_ros.data.mapping import mapping_from
 from quad_ident_ros.data.quality.fleet import vehicles
 
-FLIGHTS = {'cf1': flight(seconds=8.0, rate=50.0), 'cf2': flight(seconds=8.0, rate=50.0, seed=1,
-                                                              start=3.0)}
+FLIGHTS = {'cf1': flight(seconds=8.0, rate=50.0),
+           'cf2': flight(seconds=8.0, rate=50.0, seed=1, start=3.0)}
 NAMES = ('x', 'y', 'z', 'qw', 'qx', 'qy', 'qz')
 
 

@@ -85,8 +85,8 @@ def test_units_are_told_by_names_and_values(tmp_path):
     (SPEED, ('vel_x', 'vel_y', 'vel_z'), 'MPH', 0.44704),
     (SPEED, ('vel_x', 'vel_y', 'vel_z'), 'kt', 1852 / 3600),
     (RATE, ('gyro_x', 'gyro_y', 'gyro_z'), 'mrad/s', 1e-3)])
-def test_a_unit_in_the_name_is_read_though_it_is_no_usual_one(tmp_path, group, names, unit,
-                                                             factor):
+def test_a_unit_in_the_name_is_read_though_it_is_no_usual_one(
+        tmp_path, group, names, unit, factor):
     """Feet were read as metres without a word, a factor that no check can tell."""
     columns = {'t [min]': FLIGHT.t / 60, **named(EVERY, FLIGHT.stack(*EVERY))}
     columns = {name: values for name, values in columns.items() if name not in group}
@@ -117,8 +117,8 @@ def test_a_time_in_hours_and_what_is_no_unit(tmp_path, head, factor):
 
 
 def test_an_acceleration_without_gravity_in_its_unit_is_no_specific_force_in_another(tmp_path):
-    columns = others() | named(('acc_x', 'acc_y', 'acc_z'), np.tile([0.0, 0.0, 1.0],
-                                                                   (len(FLIGHT), 1)))
+    still = np.tile([0.0, 0.0, 1.0], (len(FLIGHT), 1))
+    columns = others() | named(('acc_x', 'acc_y', 'acc_z'), still)
     columns = {f'{name} [m/s^2]' if name.startswith('acc') else name: values
                for name, values in columns.items()}
     read = load(table(tmp_path, columns))
