@@ -17,6 +17,9 @@ _NAMED = re.compile(
     r'crazyflie)(_?(id|name|no|number|index))?)|child_frame_id')
 """Of columns that say which vehicle a row is of."""
 
+_GENERAL = {'id', 'name'}
+"""Of these, which may say anything, such as a waypoint: vehicles that fly at once, row by row."""
+
 _BEFORE = re.compile(
     rf'(?i)(/?{VEHICLE}[^a-z0-9]+)[a-z].*|(.+ )(?:T[XYZ]|R[WXYZ])')
 """Of columns that say their vehicle before what they are; those of Vicon end in TX to RW."""
@@ -35,6 +38,8 @@ def by_vehicle(table: Table, named: bool = False) -> dict[str, Table]:
         labels = _labels(table, column)
         names = [label for label in dict.fromkeys(labels) if label and label.isprintable()]
         if not 2 <= len(names) <= MOST:
+            continue
+        if plain(column)[0] in _GENERAL and 2 * np.sum(labels[1:] != labels[:-1]) < len(labels):
             continue
         parts = {name: _rows(table, labels == name) for name in names}
         if all(_filled(part) == _filled(table) for part in parts.values()):

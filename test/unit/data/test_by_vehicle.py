@@ -59,6 +59,15 @@ def test_vehicles_may_have_numbers(tmp_path, names):
     check(load_all(written(tmp_path, head, [[line[0], line[1][2:], *line[2:]] for line in lines])))
 
 
+@pytest.mark.parametrize('named', ['id', 'name'])
+def test_a_column_that_numbers_waypoints_cuts_no_flight(tmp_path, named):
+    head, lines = rows(named)
+    of_one = lines[::len(FLIGHTS)]
+    read = load(written(tmp_path, head, [[t, 1 + 4 * k // len(of_one), *values]
+                                         for k, (t, _, *values) in enumerate(of_one)]))
+    np.testing.assert_allclose(read.stack(*PLACE), FLIGHTS['cf1'].stack(*PLACE), atol=1e-9)
+
+
 def test_vehicles_in_parquet(tmp_path):
     head, lines = rows('name')
     path = tmp_path / 'swarm.parquet'
