@@ -13,6 +13,7 @@ _WAYS = tuple((re.compile(options), instead) for options, instead in (
     (f'(?:--from {_TIME} )?--to {_TIME}', _ANEW),
     (f'--from {_TIME}', _WINDOW),
     ('(?:--segment, )?--from and --to choose another part', 'the parameter window takes a part'),
+    ('--hold-out FLIGHT holds out another flight', 'of several flights the last one is held out'),
     # Some messages name the parameter beside the option.
     ('--vehicle(?!, or)', 'the parameter vehicle'),
     ('--mapping', 'the parameter mapping of the recorder'),

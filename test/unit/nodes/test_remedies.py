@@ -27,6 +27,8 @@ def test_samples_are_left_out_by_what_a_node_has(bad, said):
      'nothing to do; the parameter window takes a part'),
     ('name the vehicle that flew with --vehicle', 'name the vehicle that flew with the parameter '
      'vehicle'),
+    ('nothing to do; --hold-out FLIGHT holds out another flight',
+     'nothing to do; of several flights the last one is held out'),
     ('(--vehicle, or the parameter vehicle)', '(--vehicle, or the parameter vehicle)'),
     ('in a mapping (--mapping)', 'in a mapping (the parameter mapping of the recorder)')])
 def test_options_become_parameters(text, said):
