@@ -20,7 +20,9 @@ from quad_ident_ros.fleet.manifest import ABOUT, Listed
 from quad_ident_ros.fleet.plan import Plan
 from quad_ident_ros.fleet.store import keys_of, missing, prepare, read_table
 from quad_ident_ros.fleet.superseded import (
+    follow_files,
     give_way,
+    gone_with,
     out_of_reach,
     remove_group,
     remove_trackings,
@@ -83,7 +85,8 @@ class Summary:
     could be fitted, which the next run tries again; replaced: groups whose flights another run has
     put into groups of its own; gave_way: why groups of this run have no result, because one of
     another run has some of their flights; kept: for each group whose results stay as they were, a
-    flight of it that cannot be read any more.
+    flight of it that cannot be read any more; removed: flights that are in the data set no longer,
+    each with the reason.
     """
 
     flights: int
@@ -94,6 +97,7 @@ class Summary:
     replaced: int = 0
     gave_way: tuple[str, ...] = ()
     kept: tuple[str, ...] = ()
+    removed: tuple[str, ...] = ()
 
 
 Tell = Callable[[Progress], None]
@@ -138,15 +142,22 @@ def run_fleet(client: Any, plan: Plan, out: str | Path, *, time_limit: float = T
                                plan.mapping, plan.rules)
     kept = out_of_reach(groups, out)
     groups = [group for group in groups if group.key not in kept]
-    before, went = _diagnose_all(client, groups, out, time_limit, tell)
+    older = superseded_by(groups, out)
+    going = gone_with(older, groups, out)
+    before, went = _diagnose_all(client, groups, out, older, time_limit, tell)
+    if before:
+        follow_files(groups, out)
     replaced = _check_written([group for group in groups if group.key not in went], out)
     untracked = _track_all(client, groups, out, time_limit, tell)
     status = _statuses(out)
     ended = [status.get(group.key) for group in groups]
+    removed = {path: why for key, flights in going.items() if key not in status
+               for path, why in flights.items()}
     return Summary(sum(len(group.flights) for group in groups),
                    {name: ended.count(name) for name in (DIAGNOSED, REFUSED, FAILED, TIMEOUT)},
                    before, tuple(one.path for one in copies), untracked, len(replaced),
-                   tuple(went.values()), tuple(kept.values()))
+                   tuple(went.values()), tuple(kept.values()),
+                   tuple(f'{path} {why}' for path, why in removed.items()))
 
 
 def _looked(client: Any, flights: Sequence[Listed], mapping: Mapping | None, out: str | Path,
@@ -185,14 +196,14 @@ def _look(mapping: Mapping | None, some: Iterable[tuple[int, Listed]]
     return [(number, look(one, mapping)) for number, one in some]
 
 
-def _diagnose_all(client: Any, groups: Sequence[Group], out: str | Path, time_limit: float,
-                  tell: Tell) -> tuple[int, dict[str, str]]:
+def _diagnose_all(client: Any, groups: Sequence[Group], out: str | Path,
+                  replaced: dict[str, list[str]], time_limit: float, tell: Tell
+                  ) -> tuple[int, dict[str, str]]:
     """
-    Diagnose the groups that are not done.
+    Diagnose the groups that are not done; each takes the place of those of `replaced`.
 
     Returns how many were, and why some gave way to those of another run, {key: why}.
     """
-    replaced = superseded_by(groups, out)
     status = _statuses(out)
     todo = [group for group in groups if status.get(group.key) not in DONE]
     before = len(groups) - len(todo)

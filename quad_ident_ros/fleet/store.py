@@ -83,8 +83,8 @@ def write_rows(out: str | Path, table: str, key: str, rows: Iterable[Mapping[str
     try:
         for folder in (place.parent, aside.parent):
             folder.mkdir(parents=True, exist_ok=True)
-        plain = [{name: _plain(value) for name, value in row.items()} for row in rows]
-        parquet.write_table(pyarrow.Table.from_pylist(plain, schema=TABLES[table]), aside,
+        texts = [{name: plain(value) for name, value in row.items()} for row in rows]
+        parquet.write_table(pyarrow.Table.from_pylist(texts, schema=TABLES[table]), aside,
                             compression='zstd')
         os.replace(aside, place)
     except OSError as error:
@@ -154,9 +154,10 @@ def read_table(out: str | Path, table: str,
     return rows
 
 
-def _plain(value: Any) -> Any:
+def plain(value: Any) -> Any:
+    """Return a value as it is stored: what is no Unicode in its text is written by its code."""
     if isinstance(value, list):
-        return [_plain(one) for one in value]
+        return [plain(one) for one in value]
     return (value.encode('utf-8', 'backslashreplace').decode('utf-8') if isinstance(value, str)
             else value)
 

@@ -3,19 +3,22 @@
 """Groups of a data set in whose place new ones come, so that every flight is in it once."""
 
 from collections import defaultdict
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.fleet.grouping import Group
 from quad_ident_ros.fleet.look import content_unknown
-from quad_ident_ros.fleet.store import keys_of, read_rows, read_table, remove
+from quad_ident_ros.fleet.store import keys_of, plain, read_rows, read_table, remove, write_rows
 
 BY_GROUP = 'groups', 'flights', 'effects'
 """Tables whose files have the key of a group; that says whether it exists comes first."""
 BY_TRACKING = 'covariances', 'parameters'
 """Tables whose files have a key that begins with that of a group."""
+
+OTHER, GONE = 'has other content now', 'is not there any more'
+"""What is said of the file of a flight that is in a data set no longer."""
 
 
 @dataclass(frozen=True)
@@ -54,6 +57,42 @@ def out_of_reach(groups: Iterable[Group], out: str | Path) -> dict[str, str]:
                                           strict=True) if flight != content_unknown(path)}
     return {group.key: flight.path for group in groups for flight in reversed(group.flights)
             if flight.path in known and flight.flight == content_unknown(flight.path)}
+
+
+def gone_with(replaced: Mapping[str, Collection[str]], groups: Iterable[Group], out: str | Path
+              ) -> dict[str, dict[str, str]]:
+    """
+    Return {key of a group that goes: {path of a flight that goes with it: why}}.
+
+    replaced: as superseded_by gives it. The file in a bag that is a flight now is the same flight.
+    """
+    members = [flight for group in groups for flight in group.flights]
+    contents, places = {one.flight for one in members}, {one.path for one in members}
+
+    def stays(flight: str, path: str) -> bool:
+        return (flight in contents or flight == content_unknown(path)
+                or not places.isdisjoint(map(str, Path(path).parents)))
+
+    return {key: {row['path']: OTHER if Path(row['path']).exists() else GONE
+                  for row in read_rows(out, 'flights', key, ['flight', 'path'])
+                  if not stays(**row)}
+            for keys in replaced.values() for key in keys}
+
+
+def follow_files(groups: Iterable[Group], out: str | Path) -> None:
+    """Write where the flights of groups that were done before are now: files are moved."""
+    now = {(group.key, flight.flight): plain(flight.path)
+           for group in groups for flight in group.flights}
+    table = read_table(out, 'flights', ['group', 'flight', 'path'])
+    moved = {row['group'] for batch in table.to_batches(max_chunksize=10_000)
+             for row in batch.to_pylist()
+             if now.get((row['group'], row['flight']), row['path']) != row['path']}
+    for key in moved:
+        write_rows(out, 'flights', key, [
+            row | {'path': now.get((key, row['flight']), row['path'])}
+            for row in read_rows(out, 'flights', key)])
+        if _written(out, key) == float('inf'):      # a run beside this one has replaced it
+            remove(out, 'flights', key)
 
 
 def give_way(groups: Sequence[Group], out: str | Path, done: Collection[str]

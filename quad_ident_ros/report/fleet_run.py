@@ -95,7 +95,7 @@ class Reporter:
                      'flights': summary.flights, 'groups': groups, 'before': summary.before,
                      'copies': list(summary.copies), 'untracked': list(summary.untracked),
                      'replaced': summary.replaced, 'gave_way': list(summary.gave_way),
-                     'kept': list(summary.kept)})
+                     'kept': list(summary.kept), 'removed': list(summary.removed)})
         if self._path != '-':
             sys.stdout.write(summary_text(summary, self._out))
 
@@ -159,6 +159,11 @@ def summary_text(summary: Summary, out: str | Path) -> str:
                      f'{"its result stays" if count == 1 else "their results stay"}, but flights '
                      f'cannot be read any more: {", ".join(summary.kept[:3])}'
                      + (' ...' if count > 3 else '') + '; bring them back, or no longer name them')
+    if summary.removed:
+        lines.append(f'{counted(len(summary.removed), "flight")} removed from the data set: '
+                     f'{"; ".join(summary.removed[:3])}'
+                     + (' ...' if len(summary.removed) > 3 else '')
+                     + '; to keep a flight, give its file a name of its own and leave it there')
     if summary.replaced:
         lines.append(f'{counted(summary.replaced, "group")} not counted: another run has put the '
                      'flights into groups of its own meanwhile')

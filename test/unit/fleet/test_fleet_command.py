@@ -79,6 +79,15 @@ def test_the_end_says_which_results_stay_without_their_flights():
         'bring them back, or no longer name them')
 
 
+def test_the_end_says_which_flights_left_the_data_set():
+    groups = {'diagnosed': 7, 'refused': 0, 'failed': 0, 'timeout': 0}
+    text = summary_text(Summary(12, groups, 6, (), removed=('/card/1.bin has other content now',)),
+                        'out')
+    assert text.splitlines()[1] == (
+        '1 flight removed from the data set: /card/1.bin has other content now; to keep a flight, '
+        'give its file a name of its own and leave it there')
+
+
 def test_the_end_says_which_groups_have_no_values_of_single_flights():
     groups = {'diagnosed': 7, 'refused': 0, 'failed': 0, 'timeout': 0}
     assert summary_text(Summary(12, groups, 0, (), ('it took long',) * 2), 'out').splitlines() == [

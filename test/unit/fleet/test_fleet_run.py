@@ -193,6 +193,41 @@ def test_results_of_flights_that_cannot_be_read_any_more_stay(flight, tmp_path, 
     assert summary.kept == () and summary.before == 2
 
 
+def test_flights_that_leave_the_data_set_are_named(flight, tmp_path, monkeypatch):
+    """A memory card whose log has the name of the one before, and a log that is moved away."""
+    elsewhere(monkeypatch, tmp_path, lambda given, item: given(item))
+    other = flight.with_name('b.csv')
+    other.write_text('t,px\n0,2\n0.1,2\n', encoding='utf-8')
+
+    def ran():
+        return run.run_fleet(None, planned(['flights'], vehicle='hummingbird'), 'fleet').removed
+
+    assert ran() == ()
+    flight.write_text('t,px\n0,3\n0.1,2\n', encoding='utf-8')
+    assert ran() == (f'{flight} has other content now',)
+    other.rename(tmp_path / 'away')
+    assert ran() == (f'{other} is not there any more',)
+    assert ran() == ()
+
+
+def test_a_flight_that_is_renamed_is_known_by_its_new_name(flight, tmp_path, monkeypatch):
+    """And the next flight, which has its old name, does not take its place."""
+    elsewhere(monkeypatch, tmp_path, lambda given, item: given(item))
+
+    def ran(name):
+        return run.run_fleet(None, planned([name], vehicle='hummingbird'), 'fleet')
+
+    ran('flights')
+    before, = read_table('fleet', 'flights').to_pylist()
+    renamed = flight.rename(flight.with_name('first.csv'))
+    summary = ran('flights')
+    assert summary.before == 1 and summary.removed == ()
+    assert read_table('fleet', 'flights').to_pylist() == [before | {'path': str(renamed)}]
+    flight.write_text('t,px\n0,3\n0.1,2\n', encoding='utf-8')
+    assert ran(str(flight)).removed == ()
+    assert set(read_table('fleet', 'flights')['path'].to_pylist()) == {str(flight), str(renamed)}
+
+
 def test_a_flight_that_is_not_where_a_worker_looks_is_tried_again(flight, tmp_path, monkeypatch):
     def lost(given, item):
         away = tmp_path / 'away'
