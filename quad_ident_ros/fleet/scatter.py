@@ -27,6 +27,7 @@ determine it less exactly: to 1 / sqrt(2 D) of it with D days, and neighbours ar
 LEAST, MOST = 0.05, 10.0
 """Standard errors, the least and the most scatter: less cannot be seen, more is a wrong error."""
 FARTHEST = 5.0      # standard deviations of the values, up to which the scatter is looked for
+FINEST = 1e-6       # of the most scatter is the least: with less, sums lose their 16 digits
 NORMAL = 1.4826     # times the median absolute deviation is the standard deviation
 
 
@@ -50,7 +51,8 @@ class Scatter:
         """
         usual = float(np.median(errors))
         apart = FARTHEST * NORMAL * float(np.median(np.abs(values - np.median(values))))
-        singles = np.geomspace(LEAST * usual, max(MOST * usual, apart), SCATTERS)
+        most = max(MOST * usual, apart)
+        singles = np.geomspace(max(LEAST * usual, FINEST * most), most, SCATTERS)
         first = np.ones(1, bool) if days is None else np.append(True, days[1:] != days[:-1])
         self._starts = np.flatnonzero(first)
         self._day = np.zeros(len(values), int) if days is None else np.cumsum(first) - 1

@@ -181,3 +181,14 @@ def test_days_count_only_where_they_have_several_flights():
     rng = np.random.default_rng(17)
     for one in (steady(rng, 12), in_days(rng, 1, 12)):
         assert histories([one])[0].day_scatter == 0.0
+
+
+@pytest.mark.parametrize('error', [1e-9, 1e-12])
+def test_flights_without_noise_are_compared(error):
+    """As simulators fly them: the values differ by far more than their standard errors."""
+    rng = np.random.default_rng(18)
+    fleet = [in_days(rng, 6, 3, error=error) for _ in range(4)]
+    fleet[0].values[9:] += 40.0
+    first, *others = histories(fleet)
+    assert [change.place for change in first.changes] == [9]
+    assert alarms(others) == 0
