@@ -20,6 +20,9 @@ from quad_ident_ros.fleet.folders import whose
 COLUMNS = ('path', 'vehicle', 'configuration', 'date', 'group', 'vehicle_file')
 """What the columns of a manifest are called; each further one has numbers: a covariate."""
 
+UNNAMED = 'Unnamed:'
+"""What pandas calls a column without a name, when it has read one and writes it again."""
+
 TABLES = ('.csv', '.csv.gz', '.tsv')    # the other kinds of flights are seen by their first bytes
 BAGS = '.mcap', '.db3'      # in the folder of a bag, which has its name
 ABOUT = 'fleet.json'
@@ -98,6 +101,10 @@ def _in_manifest(path: Path) -> Iterator[Listed]:
             if 'path' not in names:
                 raise InputError(f'{path}, line 1: there is no column `path`; write the names as '
                                  f'{",".join(COLUMNS)}, with commas, of which only path is needed')
+            for name in names:
+                if name not in COLUMNS and name.lower() in COLUMNS:
+                    raise InputError(f'{path}, line 1: the column {name} is not known; write '
+                                     f'{name.lower()}')
             if len(set(filter(None, names))) < sum(map(bool, names)):
                 raise InputError(f'{path}, line 1: a column is named twice; name each once')
             found: dict[str, Listed] = {}
@@ -119,7 +126,7 @@ def _entry(manifest: Path, line: int, names: Sequence[str], row: Sequence[str]) 
         raise InputError(f'{where}: {len(row)} cells, but {len(names)} columns; write one cell '
                          'for each')
     for number, (name, cell) in enumerate(zip(names, row, strict=True), 1):
-        if cell.strip() and not name:
+        if cell.strip() and (not name or name.startswith(UNNAMED)):
             raise InputError(f'{where}, column {number}: it has no name in line 1; name it, or '
                              'leave it out (`index=False` of pandas)')
     cells = {name: cell.strip() for name, cell in zip(names, row, strict=True) if name}

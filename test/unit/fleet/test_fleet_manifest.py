@@ -137,7 +137,9 @@ def test_a_manifest_says_all_of_a_flight(tmp_path):
     ('vehicle;path\nseven;a.csv\n', 'line 1: there is no column `path`; .* with commas'),
     ('Path,vehicle\na.csv,seven\n', 'line 1: there is no column `path`'),
     ('path,vehicle\na.csv,seven\na.csv,eight\n', 'line 3: .*a.csv is named above already'),
+    ('path,Vehicle\na.csv,7\n', 'line 1: the column Vehicle is not known; write vehicle'),
     (',path\n0,a.csv\n', 'line 2, column 1: it has no name in line 1; .*index=False'),
+    ('Unnamed: 0,path\n0,a.csv\n', 'line 2, column 1: it has no name in line 1; .*index=False'),
     ('path,vehicle\na\0.csv,seven\n', 'm.csv.*NUL|line 2, column path: it is empty, or no name'),
     ('path\n', 'there is no flight in it')])
 def test_what_is_wrong_with_a_manifest_is_said_with_its_place(tmp_path, text, said):
