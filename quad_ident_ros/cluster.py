@@ -35,6 +35,8 @@ NO_WORKERS = 20.0   # s without any worker, after which those of this machine ar
                     # Dask itself gives one up that could not be restarted on a busy machine
 FETCH = 5.0         # s for a result to come: its worker may have ended just after it was done
 REMEMBERED = 20     # messages, with the work in them, that each connection keeps for developers
+LOGGERS = 'distributed', 'distributed.client', 'distributed.gc', 'tornado.application'
+"""Those of Dask that have a level of their own."""
 TIMES = 'quad_ident_times'
 """The topic on which a worker says that the time of a task is over."""
 _ADDRESS = re.compile(r'((tcp|tls|ws|wss|ucx)://)?(\[[\da-f:.]+\]|[^/:\s]+):\d+', re.IGNORECASE)
@@ -81,7 +83,8 @@ def cluster(scheduler: str | None = None, workers: int | None = None,
         raise InputError("Dask is not installed: pip install 'quad_ident_ros[fleet]'")
     import dask
     import distributed  # noqa: F401  first: what is set before it would take its defaults along
-    logging.getLogger('distributed').setLevel(logging.CRITICAL)     # we say what matters
+    for name in LOGGERS:
+        logging.getLogger(name).setLevel(logging.CRITICAL)      # we say what matters
     with dask.config.set({'distributed.admin.low-level-log-length': REMEMBERED}):
         yield from _there(scheduler) if scheduler is not None else _here(workers, memory)
 

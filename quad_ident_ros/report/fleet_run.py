@@ -185,7 +185,8 @@ def workers(client: Any) -> str:
     if not found:
         return 'waiting for a worker to join'
     memory = min(one['memory_limit'] for one in found)
-    bound = f', each up to {memory / 1e9:.3g} GB of memory' if memory else ''
+    bound = (f', each up to {memory / 1e9:.3g} GB of memory' if memory else
+             '; memory is not bounded: start each with `dask worker --memory-limit 2GB`')
     return f'{counted(len(found), "worker")}{bound}'
 
 

@@ -171,6 +171,31 @@ def test_a_scheduler_that_is_not_there_is_said_in_one_line():
     assert '\n' not in str(caught.value)
 
 
+def test_a_scheduler_that_is_lost_is_said_in_one_line():
+    """It is killed while work waits; no traceback of Dask comes with it."""
+    env = {**os.environ, 'PYTHONPATH': os.pathsep.join(sys.path)}
+    made = subprocess.run([sys.executable, '-c', LOST], capture_output=True, text=True, env=env)
+    assert (made.returncode, made.stderr) == (0, '')
+    assert made.stdout.endswith('start the command again: it continues where it stopped\n')
+    assert made.stdout.count('\n') == 1
+
+
+LOST = """
+from subprocess import PIPE, Popen
+import sys
+from quad_ident_ros.cluster import cluster, results
+from quad_ident_ros.errors import InputError
+with Popen([sys.executable, '-m', 'distributed.cli.dask_scheduler', '--host', '127.0.0.1',
+            '--port', '0', '--no-dashboard'], stderr=PIPE, text=True) as scheduler:
+    address = next(line.split()[-1] for line in scheduler.stderr if 'Scheduler at:' in line)
+    with cluster(address) as client:
+        try:
+            list(results(client, abs, [1], on_tick=scheduler.kill))
+        except InputError as error:
+            print(error)
+"""
+
+
 def test_one_cluster_leaves_the_settings_of_dask_to_the_next():
     """In a process that has not imported Dask yet."""
     made = subprocess.run([sys.executable, '-c', ONE_AFTER_THE_OTHER], capture_output=True,

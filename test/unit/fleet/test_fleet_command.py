@@ -26,6 +26,7 @@ from quad_ident_ros.report.fleet_run import (  # noqa: E402, I100
     Reporter,
     seconds_left,
     summary_text,
+    workers,
 )
 from quad_ident_ros.report.screen import progress_bar  # noqa: E402, I100
 
@@ -123,6 +124,14 @@ def test_the_dashboard_is_named_where_the_scheduler_can_draw_it(drawn, said):
     client = SimpleNamespace(dashboard_link='http://10.0.0.5:8787/status',
                              run_on_scheduler=lambda *words: drawn)
     assert dashboard(client) == said
+
+
+@pytest.mark.parametrize('limits, said', [
+    ([2e9, 4e9], '2 workers, each up to 2 GB of memory'), ([2e9, 0], 'memory is not bounded'),
+    ([], 'waiting for a worker to join')])
+def test_it_is_said_whether_the_memory_of_the_workers_is_bounded(limits, said):
+    found = {str(number): {'memory_limit': limit} for number, limit in enumerate(limits)}
+    assert said in workers(SimpleNamespace(scheduler_info=lambda **_: {'workers': found}))
 
 
 def reporter_of(path):
