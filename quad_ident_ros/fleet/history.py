@@ -129,15 +129,15 @@ def histories(series: Sequence[Series], on_progress: Callable[[int, int], None] 
     """
     Return the History of each Series; what is expected before looking is shared among all.
 
-    on_progress is called with how many are done, of how many.
+    on_progress is called before each with how many are done, of how many.
     """
     places = sum(max(len(one.values) - 1, 0) for one in series)
     change = min(EVENTS / 2.0 / max(places, 1), MOST_OFTEN)
     drift = min(EVENTS / 2.0 / max(len(series), 1), MOST_OFTEN)
     made = []
     for one in series:
-        made.append(history(one, change, drift))
         on_progress(len(made), len(series))
+        made.append(history(one, change, drift))
     return tuple(made)
 
 
