@@ -11,6 +11,7 @@ from pathlib import Path
 from quad_ident_ros.data.content import files_in, sha256_of
 from quad_ident_ros.data.load import load_all
 from quad_ident_ros.data.mapping import Mapping
+from quad_ident_ros.data.quality.fleet import vehicles
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.fleet.dates import date_in_log, is_time_in_path
 from quad_ident_ros.fleet.manifest import Listed
@@ -25,7 +26,7 @@ class Looked:
     """
     A file as it was looked at: its size (bytes) and time of change (ns), SHA-256 of the content.
 
-    hardware: the vehicle as the log knows it, or ''; date: when it was flown by the log, or None;
+    hardware: the vehicle as the log knows it, '' if it knows none or several; date: when it was flown by the log, or None;
     was_read: whether the log was asked for these two; reason: why it could not be read, or ''.
     """
 
@@ -55,11 +56,12 @@ def look(one: Listed, mapping: Mapping | None = None) -> Looked:
     if not has_to_be_read(one):
         return Looked(str(path), size, modified, flight)
     try:
-        info = load_all(path, mapping)[0].info
+        records = load_all(path, mapping)
     except Exception as error:      # of a library, too: the flight is refused where it is used
         return Looked(str(path), size, modified, flight, was_read=True,
                       reason=str(error) or type(error).__name__)
-    known = info.get('hardware') or {}
+    info = records[0].info
+    known = {} if vehicles(records) else info.get('hardware') or {}
     name = ' '.join(str(value) for value in known.values())[:NAME_LENGTH]
     return Looked(str(path), size, modified, flight, name, date_in_log(info), True)
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from quad_ident_ros import __version__
 from quad_ident_ros.data.load import load_all
+from quad_ident_ros.data.quality.fleet import vehicles
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.diagnose.intake import take_in
@@ -118,7 +119,12 @@ def one_line(error: Exception) -> str:
 
 def _read(member: Member, group: Group) -> _Read:
     try:
-        return _Read(member, tuple(load_all(member.path, group.mapping, group.nominal)))
+        records = load_all(member.path, group.mapping, group.nominal)
+        if several := vehicles(records):
+            raise InputError(
+                f'{member.path}: {several[0]["message"]}; write a file for each, by `quad_ident '
+                'convert FILE NEW.csv --segment N`, into a folder of its vehicle')
+        return _Read(member, tuple(records))
     except InputError as error:
         if member.flight != content_unknown(member.path) and not Path(member.path).exists():
             raise FileNotFoundError(f'{member.path}: it is not there any more, or not where this '

@@ -193,6 +193,18 @@ def test_results_of_flights_that_cannot_be_read_any_more_stay(flight, tmp_path, 
     assert summary.kept == () and summary.before == 2
 
 
+def test_a_table_of_several_vehicles_is_no_flight_of_one(flight, tmp_path, monkeypatch):
+    """They would be diagnosed together, as what they are not."""
+    flight.write_text('t,drone_id,x,y,z\n' + ''.join(
+        f'{k / 50},cf{number},{k},{number},{k}\n' for k in range(100) for number in (1, 2)))
+    elsewhere(monkeypatch, tmp_path, lambda given, item: given(item))
+    run.run_fleet(None, planned(['flights/seven'], vehicle='hummingbird'), 'fleet')
+    row, = read_table('fleet', 'flights').to_pylist()
+    assert (row['status'], row['vehicle']) == ('refused', 'seven')
+    assert 'a.csv: they come from 2 vehicles: a_cf1 ' in row['reason']
+    assert 'write a file for each' in row['reason']
+
+
 def test_flights_that_leave_the_data_set_are_named(flight, tmp_path, monkeypatch):
     """A memory card whose log has the name of the one before, and a log that is moved away."""
     elsewhere(monkeypatch, tmp_path, lambda given, item: given(item))
