@@ -134,7 +134,7 @@ def histories(series: Sequence[Series], on_progress: Callable[[int, int], None] 
     places = sum(max(len(one.values) - 1, 0) for one in series)
     change = min(EVENTS / 2.0 / max(places, 1), MOST_OFTEN)
     drift = min(EVENTS / 2.0 / max(len(series), 1), MOST_OFTEN)
-    made = []
+    made: list[History] = []
     for one in series:
         on_progress(len(made), len(series))
         made.append(history(one, change, drift))

@@ -26,8 +26,9 @@ class Looked:
     """
     A file as it was looked at: its size (bytes) and time of change (ns), SHA-256 of the content.
 
-    hardware: the vehicle as the log knows it, '' if it knows none or several; date: when it was flown by the log, or None;
-    was_read: whether the log was asked for these two; reason: why it could not be read, or ''.
+    hardware: the vehicle as the log knows it, '' if it knows none or several; date: when it was
+    flown by the log, or None; was_read: whether the log was asked for these two; reason: why it
+    could not be read, or ''.
     """
 
     path: str
