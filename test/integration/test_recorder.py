@@ -165,8 +165,7 @@ def test_what_no_sensor_measures_is_told_and_counted_and_joined_into_nothing(
 
 
 @pytest.mark.parametrize('raw', [b'', b'\0\1\0\0', b'\0\1\0\0' + b'\xff' * 40])
-def test_bytes_that_are_no_message_are_told_and_counted_and_not_recorded(graph, capfd, tmp_path,
-                                                                        raw):
+def test_bytes_that_are_no_message_are_told_and_counted(graph, capfd, tmp_path, raw):
     """As those of a publisher with another version of the package are."""
     recorder = graph.start(Recorder, {'output': str(tmp_path)})
     records, statistics = listen(graph)
