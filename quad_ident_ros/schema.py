@@ -88,10 +88,10 @@ def number(where: str, value: object, minimum: float = -math.inf, maximum: float
     return value
 
 
-def numbers(where: str, value: object, count: int, minimum: float = -math.inf
-            ) -> tuple[float, ...]:
+def numbers(where: str, value: object, count: int, minimum: float = -math.inf,
+            maximum: float = math.inf) -> tuple[float, ...]:
     """Return a tuple of `count` floats, each checked as `number` does."""
-    return tuple(number(f'{where}[{i}]', entry, minimum)
+    return tuple(number(f'{where}[{i}]', entry, minimum, maximum)
                  for i, entry in enumerate(_list_of(where, value, count)))
 
 

@@ -88,6 +88,6 @@ class FlightJoiner:
         rows = [row for row in self._ahead if row[0] > self._last]
         self._ahead.clear()
         between.counts.joined = counts.joined + len(rows)
-        between.counts.lost, between.counts.incompatible_qos = (counts.lost,
-                                                                counts.incompatible_qos)
+        for name in ('lost', 'incompatible_qos', 'unreadable'):     # before they reach a joiner
+            setattr(between.counts, name, getattr(counts, name))
         return rows

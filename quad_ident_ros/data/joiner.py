@@ -29,7 +29,8 @@ class Counts:
     messages after their row was given up. duplicated: a stamp twice on one topic. out_of_order: a
     stamp older than the one before it on its topic. nan: messages with a value that is no finite
     number or beyond LARGEST, or an attitude that is none. lost and incompatible_qos: as the
-    middleware reports them. unread: messages that waited when the recorder was told to end, for
+    middleware reports them. unreadable: messages that are not what the type of their topic has.
+    unread: messages that waited when the recorder was told to end, for
     too long to be joined. restarts: of the clock. missing: samples that the records lack, whatever
     became of them, by the count that the sender announced or else by the sample period.
     """
@@ -43,6 +44,7 @@ class Counts:
     nan: int = 0
     lost: int = 0
     incompatible_qos: int = 0
+    unreadable: int = 0
     unread: int = 0
     restarts: int = 0
     missing: int = 0

@@ -9,9 +9,11 @@ from typing import Any
 
 import numpy as np
 
+from quad_ident_ros.data.info import unusable_entry
 from quad_ident_ros.data.message import Message
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.schema import shown
 
 
 def record_table(record: FlightRecord) -> tuple[np.ndarray, tuple[str, str, str]]:
@@ -61,9 +63,7 @@ def _info_from(where: str, label: str) -> dict[str, Any]:
         info = None
     if not isinstance(info, dict):
         raise InputError(f'{where}: the label of the third dimension is not a JSON object')
-    for name in ('run_index', 'run_count', 'start_ns', 'dropped'):
-        if not isinstance(info.get(name, 0), int):
-            raise InputError(f'{where}: {name} is not a whole number')
-    if not isinstance(info.get('notes', []), list):
-        raise InputError(f'{where}: notes are not a list')
+    if name := unusable_entry(info):
+        raise InputError(f'{where}: the info {name} of the record is not what it should be: '
+                         f'{shown(info[name])}; record or convert the flight again')
     return info

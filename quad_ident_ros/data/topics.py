@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from quad_ident_ros.data.cdr import Reader, stamped_numbers
+from quad_ident_ros.data.info import unusable_entry
 from quad_ident_ros.data.joiner import are_measured
 from quad_ident_ros.data.message import Message
 from quad_ident_ros.data.record import ARM, MOMENTS
@@ -177,8 +178,7 @@ class RunNotice:
             if not (0 <= notice.start_ns <= notice.stop_ns < 2 ** 63
                     and 0 <= notice.samples <= notice.stop_ns - notice.start_ns + 1
                     and isinstance(notice.info.get('name', ''), str)
-                    and all(isinstance(notice.info.get(name, 0), int)
-                            for name in ('run_index', 'run_count'))):
+                    and not unusable_entry(notice.info)):
                 raise ValueError
         except (ValueError, KeyError, TypeError, OverflowError, RecursionError):
             raise InputError(f'topic {RUN_TOPIC}: {text[:60]!r} announces no run; expected JSON '

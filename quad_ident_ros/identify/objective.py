@@ -15,8 +15,9 @@ from typing import TypeAlias
 import numpy as np
 
 from quad_ident_ros.compiled import compiled
+from quad_ident_ros.data.info import LARGEST
 from quad_ident_ros.identify.moments import moments
-from quad_ident_ros.identify.signals import LARGEST, Signal
+from quad_ident_ros.identify.signals import Signal
 from quad_ident_ros.identify.transfer import response, SecondOrder, zoh
 
 Floats: TypeAlias = Sequence[float] | np.ndarray

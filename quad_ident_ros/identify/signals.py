@@ -8,8 +8,17 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from quad_ident_ros.data.cutting import options, without
-from quad_ident_ros.data.record import EULER, FlightRecord, MOMENTS, QUATERNION, SATURATED
+from quad_ident_ros.data.info import LARGEST
+from quad_ident_ros.data.record import (
+    EULER,
+    FlightRecord,
+    INPUTS,
+    MOMENTS,
+    QUATERNION,
+    SATURATED,
+)
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.schema import numbers
 
 OUTPUTS = ('phi', 'theta', 'psi', 'z')
 INPUT_OF = {'phi': 'U2', 'theta': 'U3', 'psi': 'U4', 'z': 'U1'}
@@ -21,7 +30,6 @@ GRID_TOLERANCE = 1e-3
 FEWEST = 8          # samples that a record needs
 LONGEST_GAP = 10    # periods that interpolation may bridge
 TILT_MATTERS = 1e-3     # of an input's largest deviation that the tilt takes of it
-LARGEST = 1e50      # of inputs and outputs
 LARGEST_PERIOD = 1e9    # s between samples; 1 / LARGEST_PERIOD is the shortest
 NO_ARM = ('roll and pitch are not identified: the record has moments in N m, which an arm '
           'length makes U2 and U3; name the vehicle (--vehicle, or the parameter vehicle)')
@@ -116,7 +124,8 @@ def signals(record: FlightRecord, *, trim: Sequence[float] | None = None,
     if trim is None:
         trim = inputs[0]
         remarks.append('the record says no trim: inputs count from their first sample')
-    deviation = inputs - np.asarray(trim, float)
+    trim = numbers('trim', list(trim), len(INPUTS), -LARGEST, LARGEST)
+    deviation = inputs - np.asarray(trim)
     known = record.info.get('initial', {}) if at_rest else {}
     start = [known.get(name, measured[0, i]) for i, name in enumerate(OUTPUTS)]
     wanted = outputs or record.info.get('outputs') or OUTPUTS

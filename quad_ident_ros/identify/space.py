@@ -13,10 +13,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from quad_ident_ros.compiled import compiled
+from quad_ident_ros.data.info import LARGEST
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.identify.objective import Objective
 from quad_ident_ros.identify.transfer import SecondOrder
 from quad_ident_ros.identify.vp import best_poles, COMPLEX_PENALTY
+from quad_ident_ros.schema import numbers
 
 SIZE = 200.0
 AT_BOUNDS = 1e-6    # share of the space within which a model lies on its bounds
@@ -93,9 +95,12 @@ def check_bounds(pole_bounds: tuple[float, float] | None, gain_bounds: tuple[flo
                  ) -> None:
     """Raise InputError for bounds, (low, high) or None, that hold nothing."""
     for name, bounds in (('pole_bounds', pole_bounds), ('gain_bounds', gain_bounds)):
-        if bounds is not None and not (np.isfinite(bounds).all() and bounds[0] < bounds[1]):
-            raise InputError(f'{name}: the lower bound must be below the upper, both finite, got '
-                             f'[{bounds[0]:g}, {bounds[1]:g}]')
+        if bounds is None:
+            continue
+        low, high = numbers(name, list(bounds), 2, -LARGEST, LARGEST)
+        if not low < high:
+            raise InputError(f'{name}: the lower bound must be below the upper, got '
+                             f'[{low:g}, {high:g}]')
 
 
 def find_space(objective: Objective, poles: str = 'auto',

@@ -11,6 +11,7 @@ import numpy as np
 from std_msgs.msg import Bool, Float64MultiArray, String
 
 from quad_ident_ros.data.commands import with_inputs
+from quad_ident_ros.data.info import LARGEST
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.identify.identify import identify, Settings
 from quad_ident_ros.identify.levy import LEAST, levy_sigma
@@ -41,9 +42,9 @@ SPECS = (
     ParameterSpec('window', 0.0, 'Seconds at the end of a record that are fitted; 0 takes all.',
                   limits=(0.0, 1e6)),
     ParameterSpec('pole_bounds', [], 'Lower and upper bound of a and b, 1/s; empty: from the '
-                  'data.', length=(0, 2)),
+                  'data.', limits=(-LARGEST, LARGEST), length=(0, 2)),
     ParameterSpec('gain_bounds', [], 'Lower and upper bound of K; empty: from the data.',
-                  length=(0, 2)),
+                  limits=(-LARGEST, LARGEST), length=(0, 2)),
     ParameterSpec('poles', 'auto', 'Complex pairs: never (real), if they reduce the error by more '
                   'than noise does (auto), or if they are better at all (any).',
                   choices=tuple(COMPLEX_PENALTY)),
@@ -58,7 +59,7 @@ SPECS = (
                   'moments, for records that do not say it (empty: these have no roll and pitch), '
                   'and whose limits show where rotors saturate.'),
     ParameterSpec('trim', [], 'U1..U4 from which inputs count; empty: what the record says, or '
-                  'its first sample.', length=(0, 4)),
+                  'its first sample.', limits=(-LARGEST, LARGEST), length=(0, 4)),
     ParameterSpec('evaluations', 0, 'Evaluations of the objective per search, the same for each '
                   'method; 0 goes by generations.', limits=(0, 100_000_000)),
     ParameterSpec('population', _SWARM.population, 'Particles or nests, N.', limits=(2, 100_000)),

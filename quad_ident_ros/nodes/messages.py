@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Messages that carry tables: flight records and fitted parameters, with labelled dimensions."""
+"""Messages of tables, with labelled dimensions, and of diagnostics; names of types."""
 
 from array import array
 
@@ -38,6 +38,11 @@ def record_message(record):
     """Return the message of a flight record, as data.table lays it out."""
     table, labels = record_table(record)
     return table_message(table, *labels)
+
+
+def type_name(message_class):
+    """Return the name of the type of a class of messages, package/msg/Name."""
+    return f'{message_class.__module__.partition(".")[0]}/msg/{message_class.__name__}'
 
 
 def diagnostics_message(node, level, text, values):

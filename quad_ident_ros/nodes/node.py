@@ -9,6 +9,7 @@ from rclpy.parameter import Parameter
 from rclpy.parameter_service import ParameterService
 
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.nodes.messages import type_name
 
 LISTS = (Parameter.Type.DOUBLE_ARRAY, Parameter.Type.STRING_ARRAY)
 
@@ -58,7 +59,7 @@ class PackageNode(Node):
 
     def _take_topic(self, name, msg_type):
         topic = self.resolve_topic_name(name)
-        kind = f'{msg_type.__module__.partition(".")[0]}/msg/{msg_type.__name__}'
+        kind = type_name(msg_type)
         before = self._types_by_topic.setdefault(topic, kind)
         if before != kind:
             raise TwoTypes(f'{topic} cannot be both {before} and {kind}: a topic has one type; a '

@@ -88,9 +88,20 @@ class Outlet:
 
 
 def outlets_of(node, columns, parameters):
-    """Return the Outlets of a recorder's parameters, that of `record` first."""
+    """
+    Return the Outlets of a recorder's parameters, that of `record` first.
+
+    Raises InputError where a remapping gives two of them one topic.
+    """
     most = parameters['window_samples']
+    windows = windows_of(parameters['windows'])
+    names = [node.resolve_topic_name(name)
+             for name in (RECORD, *(window.topic for window in windows))]
+    for name in names:
+        if names.count(name) > 1:
+            raise InputError(f'parameter windows: two windows of this node have the topic {name} '
+                             'by a remapping (-r); give each a name of its own')
     return (Outlet(node, RECORD, columns,
                    Limits(most, parameters['window_seconds'], parameters['overlap'])),
             *(Outlet(node, window.topic, columns, Limits(most, window.seconds, window.overlap))
-              for window in windows_of(parameters['windows'])))
+              for window in windows))

@@ -30,8 +30,8 @@ class ParameterSpec:
     """
     A parameter: name, default (its type is the type; a list means doubles, a tuple texts).
 
-    limits: (low, high) for numbers; choices: allowed texts; length: allowed lengths of a list;
-    fixed: it cannot be changed while the node runs.
+    limits: (low, high) for numbers, also in lists; choices: allowed texts; length: allowed
+    lengths of a list; fixed: it cannot be changed while the node runs.
     """
 
     name: str
@@ -69,7 +69,7 @@ class ParameterSpec:
             for entry in [value] if isinstance(value, str) else value:
                 schema.choice(where, entry, self.choices)
         if isinstance(self.default, list):
-            schema.numbers(where, list(value), len(value))
+            schema.numbers(where, list(value), len(value), *(self.limits or ()))
             if self.length and len(value) not in self.length:
                 raise InputError(f'{where}: expected {" or ".join(map(str, self.length))} '
                                  f'numbers, got {len(value)}')

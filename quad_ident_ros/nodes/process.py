@@ -10,7 +10,8 @@ import tempfile
 import threading
 
 import rclpy
-from rclpy.exceptions import ParameterException
+from rclpy._rclpy_pybind11 import RCLError
+from rclpy.exceptions import NameValidationException, ParameterException
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.parameter import Parameter
 from rclpy.signals import SignalHandlerOptions
@@ -90,6 +91,9 @@ def _run(node_class, args, executor_class, warm_up):
             node = node_class()
         except ParameterException as error:
             raise InputError(f'a parameter cannot be used: {_first_line(error)}') from None
+        except (RCLError, NameValidationException) as error:
+            raise InputError('the node cannot be made; check its namespace, and the names that -r '
+                             f'and parameters give topics: {_first_line(error)}') from None
         _check_parameter_files(args, node)
         executor = executor_class()
         executor.add_node(node)

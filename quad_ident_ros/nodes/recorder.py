@@ -9,7 +9,7 @@ import time
 
 from diagnostic_msgs.msg import DiagnosticArray
 import geometry_msgs.msg
-from rclpy._rclpy_pybind11 import RCLError
+from rclpy._rclpy_pybind11 import RCLError, RMWError
 from rclpy.clock import Clock, ClockType
 from rclpy.duration import Duration
 from rclpy.serialization import deserialize_message
@@ -32,7 +32,7 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.nodes import process
 from quad_ident_ros.nodes.health import Health
 from quad_ident_ros.nodes.mapped import message_class
-from quad_ident_ros.nodes.messages import diagnostics_message
+from quad_ident_ros.nodes.messages import diagnostics_message, type_name
 from quad_ident_ros.nodes.node import PackageNode, TwoTypes
 from quad_ident_ros.nodes.on_disk import FLUSH_PERIOD, OnDisk
 from quad_ident_ros.nodes.other_types import one_topic_for_two
@@ -71,7 +71,8 @@ Publishes:
   record        std_msgs/Float64MultiArray (latched, 16 deep)  samples x columns, see the labels;
                 and the topics of the parameter windows
   ~/statistics  std_msgs/String (latched)                      JSON: received, joined, dropped,
-                late, duplicated, out of order, NaN, lost, unread, recordings
+                late, duplicated, out of order, NaN, lost, unreadable, unread,
+                recordings
   joined_until  std_msgs/UInt64                                stamp (ns) of the last joined row
   /diagnostics  diagnostic_msgs/DiagnosticArray, also wrong frames: a twist or pose that is not
                 in ENU and FLU
@@ -228,7 +229,9 @@ class Recorder(PackageNode):
         now = self._last_message = self._now()
         sample = topic.read(raw)
         if sample is None:
-            message = deserialize_message(raw, kind)
+            message = self._message(topic.name, kind, raw)
+            if message is None:
+                return
             sample = stamp_ns(message), topic.values(message)
         stamp, values = sample
         self._disk.write(topic.name, raw)
@@ -247,12 +250,14 @@ class Recorder(PackageNode):
 
     def _on_mapped(self, name, kind, raw):
         now = self._last_message = self._now()
+        message = self._message(name, kind, raw)
+        if message is None:
+            return
         self._disk.write(name, raw, holds=name not in self._mapped.topics)
         self._disk.flush_when_due(now)
         try:
             samples = self._mapped.samples(name, self._types[name],
-                                           self.get_clock().now().nanoseconds,
-                                           deserialize_message(raw, kind))
+                                           self.get_clock().now().nanoseconds, message)
         except InputError as error:
             self._say_unreadable(str(error))
             return
@@ -271,14 +276,28 @@ class Recorder(PackageNode):
                                           'begins')
             self._keep(rows)
 
+    def _message(self, name, kind, raw):
+        """Return a message, or None where the bytes of it are none of its kind."""
+        try:
+            return deserialize_message(raw, kind)
+        except RMWError:
+            self.counts.unreadable += 1
+            self._say_unreadable(
+                f'{self.resolve_topic_name(name)}: a message is no {type_name(kind)} as it is '
+                'defined here; source the package in the version that its publisher has')
+            return None
+
     def _say_unreadable(self, why):
         self._health.trouble = self._unreadable = why
         self.get_logger().error(why, throttle_duration_sec=10.0)
 
     def _on_run(self, raw):
+        message = self._message(RUN_TOPIC, String, raw)
+        if message is None:
+            return
         self._disk.write(RUN_TOPIC, raw)
         try:
-            notice = RunNotice.from_json(deserialize_message(raw, String).data)
+            notice = RunNotice.from_json(message.data)
         except InputError as error:
             self.get_logger().error(str(error), throttle_duration_sec=10.0)
             return
@@ -293,6 +312,7 @@ class Recorder(PackageNode):
                 for outlet in self._outlets:
                     outlet.buffer.columns = columns
             self._health.note_rows(self._now())
+            self._unjoined.note_rows()
             self._frames.add(rows)
             self._unacknowledged += len(rows)
             if self._unacknowledged >= ACKNOWLEDGED:

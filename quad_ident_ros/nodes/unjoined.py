@@ -21,6 +21,7 @@ class Unjoined:
         self._node, self._topics, self._joiner = node, topics, joiner
         self._mapped, self._gap, self._begun = mapped, gap, now
         self._awaits = mapped is not None
+        self._at_rows = (0, 0)
 
     def between(self):
         """Return how rows come about where the stamps are not what they should be, or ''."""
@@ -41,8 +42,17 @@ class Unjoined:
             f'nobody publishes {", ".join(absent)}: correct the name, or leave it out of the '
             'mapping' if absent else 'leave missing topics out of the mapping')
 
+    def note_rows(self):
+        """Note that rows were joined."""
+        self._at_rows = self._repeated()
+
     def apart(self):
-        """Say that the stamps of the topics are too far apart."""
+        """Say what keeps the stamps of the topics from going together."""
+        repeated, received = (now - then for now, then in zip(self._repeated(), self._at_rows,
+                                                              strict=True))
+        if 2 * repeated > received:
+            return ('the messages have one stamp again and again (header.stamp, 0 where nobody '
+                    'sets it); stamp each with the time of its sample')
         if self._mapped is None and not self._joiner.interpolates:
             return 'the stamps of the topics are never equal'
         if self._mapped is not None:
@@ -54,6 +64,11 @@ class Unjoined:
                         f'{self._mapped.named(self._topics[:1])}; synchronise their clocks')
         return (f'the samples of the topics are never within {self._gap:g} s of one another '
                 '(parameter gap)')
+
+    def _repeated(self):
+        """Return how many messages had the stamp of another one, and how many there were."""
+        counts = self._joiner.counts
+        return counts.duplicated, sum(counts.received.values())
 
     def another_type(self):
         """Say which silent topics are of other types, or return ''."""

@@ -82,6 +82,8 @@ def test_no_message_ends_a_node(graph, tmp_path, seed):
         if k % 20 == 0:
             runs.publish(String(data=notices(draw, stamp)))
             draw.choice(records).publish(tables(draw, stamp))
+            draw.choice((runs, *records, *vehicle.publishers.values())).publish(
+                draw.choice((b'', b'\0\1\0\0', b'\0\1\0\0' + b'\xff' * 40)))
         graph.executor.spin_once(timeout_sec=0.0)
     graph.spin_until(lambda: recorder.counts.received == sent, 'all messages')
     assert recorder.counts.joined > 100

@@ -33,6 +33,7 @@ REFUSED = {
     'recorder': [
         ({'topics': ['input', 'outputs']}, "parameter topics: 'outputs' is not one of"),
         ({'output': 3}, 'parameter output: expected text, got 3'),
+        ({'windows': [f'{"x" * 300}=3']}, 'topic length should not exceed'),
     ],
     'identifier': [
         ({'method': 'simplex'}, "'simplex' is not one of all, pso, cs, pso_cs, ls, vp"),

@@ -3,6 +3,7 @@
 """Node recorder: joining, counting, windows; what it writes is in test_recording.py."""
 
 import math
+import re
 import signal
 import time
 
@@ -13,6 +14,7 @@ import pytest
 from rclpy.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy
 from std_msgs.msg import Float64MultiArray, String
 
+from quad_ident_ros.data.load import load
 from quad_ident_ros.data.topics import RunNotice
 from quad_ident_ros.nodes import health
 from quad_ident_ros.nodes import recorder as recorder_module
@@ -54,7 +56,7 @@ def await_joined(graph, recorder, count):
 
 def problems(account):
     names = ('dropped', 'late', 'duplicated', 'out_of_order', 'nan', 'lost', 'incompatible_qos',
-             'restarts', 'missing')
+             'unreadable', 'restarts', 'missing')
     return {name: account[name] for name in names if account[name]}
 
 
@@ -162,6 +164,27 @@ def test_what_no_sensor_measures_is_told_and_counted_and_joined_into_nothing(
     assert f'[recorder]: {topic}: ' in (err := capfd.readouterr().err) and said in err
 
 
+@pytest.mark.parametrize('raw', [b'', b'\0\1\0\0', b'\0\1\0\0' + b'\xff' * 40])
+def test_bytes_that_are_no_message_are_told_and_counted(graph, capfd, tmp_path, raw):
+    """As those of a publisher with another version of the package are."""
+    recorder = graph.start(Recorder, {'output': str(tmp_path)})
+    records, statistics = listen(graph)
+    vehicle = Vehicle(graph)
+    runs = graph.advertise(String, 'run', latched(32))
+    vehicle.fly(10)
+    for publisher in (*vehicle.publishers.values(), runs):
+        publisher.publish(raw)
+    vehicle.fly(10, first=SECOND + 10 * PERIOD)
+    await_joined(graph, recorder, 20)
+    assert graph.trigger('recorder/flush').success
+    assert problems(await_counts(graph, statistics, joined=20, records=1, unreadable=6)) == {
+        'unreadable': 6}
+    assert re.search(r'/\w+: a message is no \w+/msg/\w+ as it is defined here; source',
+                     capfd.readouterr().err)
+    graph.stop(recorder)
+    assert len(load(tmp_path / 'recording_1' / 'bag')) == 20
+
+
 def test_an_arm_by_which_moments_are_beyond_all_numbers_does_not_end_the_recorder(graph):
     graph.start(Recorder, {'topics': ['input']})
     records, _ = listen(graph)
@@ -192,10 +215,11 @@ def test_a_window_is_complete_when_it_is_full(graph, parameters):
     assert stamps_of(records.records()[2]).tolist() == stamps[80:]
 
 
-@pytest.mark.parametrize('topics, shift, said', [
-    (('attitude', 'input'), 0, 'nothing comes on altitude, pose, twist'),
-    (tuple(STREAMS), 100 * PERIOD, 'never within 0.1 s of one another')])
-def test_it_says_why_messages_do_not_become_samples(graph, topics, shift, said):
+@pytest.mark.parametrize('topics, period, shift, said', [
+    (('attitude', 'input'), PERIOD, 0, 'nothing comes on altitude, pose, twist'),
+    (tuple(STREAMS), PERIOD, 100 * PERIOD, 'never within 0.1 s of one another'),
+    (tuple(STREAMS), 0, 0, 'have one stamp again and again')])
+def test_it_says_why_messages_do_not_become_samples(graph, topics, period, shift, said):
     graph.start(Recorder)
     diagnostics = graph.listen(DiagnosticArray, '/diagnostics')
     vehicle = Vehicle(graph, topics, STREAM)
@@ -206,7 +230,7 @@ def test_it_says_why_messages_do_not_become_samples(graph, topics, shift, said):
         while sent < 50 * (time.monotonic() - started):    # 50 samples/s
             sent += 1
             for k, topic in enumerate(topics):
-                vehicle.send(SECOND + sent * PERIOD + k * shift, topics=[topic])
+                vehicle.send(SECOND + sent * period + k * shift, topics=[topic])
         return diagnostics and said in diagnostics[-1].status[0].message
 
     graph.spin_until(trouble, said)

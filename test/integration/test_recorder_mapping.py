@@ -200,6 +200,18 @@ def test_a_message_that_holds_something_else_is_said(graph, tmp_path):
     assert 'topic /p' in response.message and 'cannot be read for rate' in response.message
 
 
+def test_bytes_that_are_no_message_are_told_and_counted(graph, tmp_path, capfd):
+    (tmp_path / 'm.yaml').write_text('topics:\n  pose: {topic: /p}\n')
+    recorder = graph.start(Recorder, {'mapping': str(tmp_path / 'm.yaml')})
+    publisher = graph.advertise(PoseStamped, '/p', 1000)
+    for k in range(10):
+        publisher.publish(pose(START + k * 10 * MS))
+        publisher.publish(b'\0\1\0\0' + b'\xff' * 40)
+    graph.spin_until(lambda: recorder.counts.unreadable == 10, 'what cannot be read')
+    assert graph.trigger('recorder/flush').success
+    assert '/p: a message is no geometry_msgs/msg/PoseStamped' in capfd.readouterr().err
+
+
 @pytest.mark.parametrize('parameters, said', [
     ({'mapping': '/none/m.yaml'}, '/none/m.yaml'),
     ({'topics': ['odometry', 'pose']}, 'do not go with the others')])

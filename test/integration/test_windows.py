@@ -50,6 +50,13 @@ def test_a_window_that_is_none_is_refused(entry, said):
         windows_of([entry])
 
 
+def test_a_remapping_cannot_give_two_windows_one_topic(graph):
+    """The diagnoser of the side by side recipe has this remapping."""
+    with pytest.raises(InputError, match='two windows of this node have the topic /record_long'):
+        graph.start(Recorder, {'windows': ['record_long=30']},
+                    arguments=['-r', 'record:=record_long'])
+
+
 def test_a_window_is_read():
     assert windows_of(['a=30', 'b/c=2.5,0.9']) == (Window('a', 30.0, 0.0),
                                                    Window('b/c', 2.5, 0.9))

@@ -58,7 +58,7 @@ def differentiated(record: FlightRecord, vehicle: Vehicle | None) -> list[Findin
     """Find velocity and rate that are taken from position and attitude, not from the record."""
     pairs = {'velocity': ('vx, vy, vz', 'the position'), 'rate': ('wx, wy, wz', 'the attitude')}
     if DIFFERENTIATED in record.info:
-        groups, rough = record.info[DIFFERENTIATED], record.info[DIFFERENCES]
+        groups, rough = record.info[DIFFERENTIATED], record.info.get(DIFFERENCES, ())
     else:
         rough = differenced_motion(record)
         groups = (*missing_motion(record), *rough)

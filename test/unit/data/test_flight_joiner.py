@@ -81,3 +81,11 @@ def test_angles_are_interpolated_along_the_shortest_turn():
     psi = np.array([row[1][2] for row in rows[-50:]])
     k = np.rint((np.array([row[0] for row in rows[-50:]]) - 10 ** 9) / (10 * MS))
     np.testing.assert_allclose(np.exp(1j * psi), np.exp(0.5j * (k - 0.5)), atol=1e-9)
+
+
+def test_what_never_reached_a_joiner_stays_counted():
+    joiner = FlightJoiner(('pose', 'twist'), 0.1)
+    joiner.counts.lost, joiner.counts.unreadable = 2, 3
+    rows_of(joiner, messages({'pose': 100, 'twist': 30}, offsets={'twist': 3 * MS}))
+    assert joiner.interpolates
+    assert (joiner.counts.lost, joiner.counts.unreadable) == (2, 3)

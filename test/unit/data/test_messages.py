@@ -4,14 +4,16 @@
 
 from array import array
 import json
+import math
 
 import numpy as np
 import pytest
 from std_msgs.msg import Float64MultiArray, MultiArrayDimension
 
+from quad_ident_ros.data.info import CHECKS
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.data.table import record_from_table
-from quad_ident_ros.data.topics import FLIGHT_TOPICS, raw_columns, record_columns
+from quad_ident_ros.data.topics import FLIGHT_TOPICS, raw_columns, record_columns, RunNotice
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.nodes.messages import parameter_message, record_message
 
@@ -32,6 +34,23 @@ def message(*, label='t,pz', sizes=(3, 2, 1), data=(0.0, 1.0, 0.1, 2.0, 0.2, 3.0
         result.layout.dim.append(MultiArrayDimension(label=labels[k], size=sizes[k]))
     result.data = array('d', data)
     return result
+
+
+@pytest.mark.parametrize('name', sorted(CHECKS))
+def test_an_entry_of_the_info_that_nobody_can_use_is_refused(name):
+    """Such as one of a damaged bag, or of a program that calls something else so."""
+    for odd in ({'z': ['y']}, None, 'x', 1e308, math.nan, 10 ** 400, [[]], [None] * 4,
+                [1e308] * 4):
+        info = {name: odd}
+        notice = {'start_ns': 0, 'stop_ns': 9, 'samples': 10, 'info': info}
+        if CHECKS[name](odd):
+            record_from_table(message(info=json.dumps(info)))
+            continue
+        with pytest.raises(InputError, match=f'the info {name} of the record is not'):
+            record_from_table(message(info=json.dumps(info)))
+        with pytest.raises(InputError, match='announces no run'):
+            RunNotice.from_json(json.dumps(notice))
+    assert not CHECKS[name](math.inf)
 
 
 def test_parameters_are_labelled_and_strided():
