@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import math
 import operator
 from typing import Any
+import warnings
 
 import numpy as np
 
@@ -54,7 +55,9 @@ def tables_of(path: str, text: str, keys: tuple[str, ...]) -> list[Table]:
     Raises InputError with the line for a value of such a dictionary that is neither.
     """
     try:
-        tree = ast.parse(text)
+        with warnings.catch_warnings():
+            warnings.simplefilter('ignore')     # of the style of a file that is not ours
+            tree = ast.parse(text)
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         line = f', line {error.lineno}' if isinstance(error, SyntaxError) else ''
         raise InputError(f'{path}{line}: is not Python that can be parsed') from None

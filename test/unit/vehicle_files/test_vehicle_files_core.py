@@ -224,6 +224,13 @@ def test_a_file_in_the_home_folder_is_found_by_its_sign(tmp_path, monkeypatch):
     assert source_of('~/params.py:heavy').path == str(path)
 
 
+@pytest.mark.filterwarnings('error')
+def test_what_python_warns_of_in_a_file_is_not_shown(tmp_path):
+    text = '"""Thrust over \\Omega."""\n' + PARAMETERS
+    path = written(tmp_path, text)
+    assert load_any_vehicle(path).mass == 0.5
+
+
 def test_a_python_file_is_not_run(tmp_path):
     witness = tmp_path / 'run'
     text = f'open({str(witness)!r}, "w")\n' + PARAMETERS
