@@ -197,7 +197,11 @@ class Drone:
 
     def rpm(self, thrust: np.ndarray, wanted: float) -> float:
         """Return the speed, rpm, at which a rotor gives a thrust, N; InputError."""
-        roots = np.polynomial.polynomial.polyroots([thrust[0] - wanted, *thrust[1:]])
+        try:
+            with np.errstate(all='ignore'):
+                roots = np.polynomial.polynomial.polyroots([thrust[0] - wanted, *thrust[1:]])
+        except np.linalg.LinAlgError:       # a last coefficient so small that the roots overflow
+            roots = np.zeros(0)
         real = [float(root.real) for root in roots
                 if abs(root.imag) < 1e-9 * abs(root) and 0.0 < root.real < MOST]
         if not real or not thrust[1] + 2.0 * thrust[2] * max(real) > 0.0:

@@ -23,13 +23,14 @@ class EditedTable(Edits):
         self.table = table
         self._begins = [0, *(match.end() for match in re.finditer(rb'\r\n|\r|\n', self.data))]
         node = table.node
-        if isinstance(node, ast.Dict):
+        if isinstance(node, ast.Dict) and None not in node.keys:
             self._values = {key.value: value for key, value in
                             zip(node.keys, node.values, strict=True)
                             if isinstance(key, ast.Constant)}
-            first = next(key for key in node.keys if key is not None)
-            self._entry, self._first = '{key!r}: {value}', self._span(first)[0]
-        elif isinstance(node, ast.Call) and node.keywords:
+            self._entry, self._first = '{key!r}: {value}', self._span(
+                next(key for key in node.keys if key is not None))[0]
+        elif isinstance(node, ast.Call) and not node.args and all(
+                keyword.arg for keyword in node.keywords):
             self._values = {keyword.arg: keyword.value for keyword in node.keywords
                             if keyword.arg}
             self._entry, self._first = '{key}={value}', self._span(node.keywords[0])[0]

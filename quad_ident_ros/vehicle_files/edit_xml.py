@@ -102,10 +102,14 @@ class EditedXml(Edits):
 
     def _replace(self, element: Element, begin: int, end: int, words: list[str],
                  new: Sequence[float] | np.ndarray, which: Sequence[bool]) -> None:
-        """Put numbers in the place of words between two places; all where the count differs."""
+        """
+        Put numbers in the place of words between two places; all where the count differs.
+
+        words: those that stand there, and perhaps others behind, of the defaults of a model.
+        """
         stands = [(begin + match.start(), begin + match.end())
                   for match in re.finditer(rb'\S+', self.data[begin:end])]
-        if [self.data[a:b].decode() for a, b in stands] != words:
+        if [self.data[a:b].decode() for a, b in stands] != words[:len(stands)]:
             raise InputError(f'{element.where}: its numbers are written with entities; write them '
                              'as plain numbers')
         if len(stands) != len(new):

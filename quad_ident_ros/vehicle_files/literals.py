@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import math
 import operator
 from typing import Any
+import warnings
 
 import numpy as np
 
@@ -23,7 +24,7 @@ _FUNCTIONS: dict[str, Callable[..., Any]] = {
     'array': lambda *values: _array(values[0]), 'sqrt': np.sqrt,
     'sin': np.sin, 'cos': np.cos, 'tan': np.tan, 'deg2rad': np.deg2rad,
     'radians': np.deg2rad, 'float': float, 'dict': dict, 'zeros': np.zeros}
-_LIBRARIES = ('np', 'numpy', 'math')
+_LIBRARIES = ('np', 'numpy', 'math', 'copy')
 _CHANGING = ('update', 'setdefault', 'pop', 'popitem', 'clear')    # methods of a dictionary
 _MOST = 1e12        # of a power or a whole number: what takes longer is no parameter
 _ENTRIES = 10_000   # of an array: a vehicle has some ten rotors with three places each
@@ -54,7 +55,9 @@ def tables_of(path: str, text: str, keys: tuple[str, ...]) -> list[Table]:
     Raises InputError with the line for a value of such a dictionary that is neither.
     """
     try:
-        tree = ast.parse(text)
+        with warnings.catch_warnings():
+            warnings.simplefilter('ignore')     # of the style of a file that is not ours
+            tree = ast.parse(text)
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         line = f', line {error.lineno}' if isinstance(error, SyntaxError) else ''
         raise InputError(f'{path}{line}: is not Python that can be parsed') from None
@@ -85,7 +88,7 @@ def _value_given_by(statement: Any, names: Mapping[str, Any], path: str, keys: t
             return _value(statement.value, names)
     except (_Unreadable, ArithmeticError, TypeError, ValueError, LookupError,
             RecursionError) as error:
-        if _keys_of(statement.value) >= set(keys):
+        if _keys_of(statement.value, names) >= set(keys):
             line, said = (error.args if isinstance(error, _Unreadable) else
                           (statement.lineno, 'a value'))
             raise InputError(f'{path}, line {line}: {said} is not a number that can be read '
@@ -119,13 +122,24 @@ def _changed_by(statement: ast.stmt) -> set[str]:
     return found
 
 
-def _keys_of(node: ast.expr) -> set[str]:
+def _keys_of(node: ast.expr, names: Mapping[str, Any]) -> set[str]:
+    """Return the keys of a dictionary, with those of others that it is made of."""
+    if isinstance(node, ast.Name):
+        value = names.get(node.id)
+        return {key for key in value if isinstance(key, str)} if isinstance(value, dict) else set()
+    parts: list[ast.expr] = []
+    found: set[str] = set()
     if isinstance(node, ast.Dict):
-        return {key.value for key in node.keys
-                if isinstance(key, ast.Constant) and isinstance(key.value, str)}
-    if isinstance(node, ast.Call):
-        return {keyword.arg for keyword in node.keywords if keyword.arg}
-    return set()
+        found = {key.value for key in node.keys
+                 if isinstance(key, ast.Constant) and isinstance(key.value, str)}
+        parts = [value for key, value in zip(node.keys, node.values, strict=True) if key is None]
+    elif isinstance(node, ast.Call):
+        found = {keyword.arg for keyword in node.keywords if keyword.arg}
+        parts = [*node.args, *(keyword.value for keyword in node.keywords if not keyword.arg),
+                 *([node.func.value] if isinstance(node.func, ast.Attribute) else [])]
+    elif isinstance(node, ast.BinOp):
+        parts = [node.left, node.right]
+    return found.union(*(_keys_of(part, names) for part in parts))
 
 
 def _lines_of(node: ast.expr, usual: int, value: Mapping[str, Any]) -> dict[str, int]:
@@ -144,9 +158,14 @@ def _value(node: ast.expr, names: Mapping[str, Any]) -> Any:
         return names[node.id]
     if isinstance(node, ast.List | ast.Tuple):
         return [_value(each, names) for each in node.elts]
-    if isinstance(node, ast.Dict) and all(key is not None for key in node.keys):
-        return {_value(key, names): _value(value, names)    # type: ignore[arg-type]
-                for key, value in zip(node.keys, node.values, strict=True)}
+    if isinstance(node, ast.Dict):
+        made: dict[Any, Any] = {}
+        for key, value in zip(node.keys, node.values, strict=True):
+            made.update(_table(value, names) if key is None else
+                        {_value(key, names): _value(value, names)})
+        return made
+    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.BitOr):
+        return _table(node.left, names) | _table(node.right, names)
     if isinstance(node, ast.UnaryOp) and type(node.op) in _SIGNS:
         return _SIGNS[type(node.op)](_number(node.operand, names))
     if isinstance(node, ast.BinOp) and type(node.op) in _BINARY:
@@ -172,13 +191,29 @@ def _called(node: ast.Call, names: Mapping[str, Any]) -> Any:
     function = node.func
     name = (function.attr if isinstance(function, ast.Attribute) and _library(function.value) else
             function.id if isinstance(function, ast.Name) else '')
+    if isinstance(function, ast.Attribute) and not _library(function.value) and (
+            function.attr == 'copy' and not node.args and not node.keywords):
+        return dict(_table(function.value, names))
+    if name == 'deepcopy' and len(node.args) == 1:
+        return dict(_table(node.args[0], names))
     if name not in _FUNCTIONS or (name == 'zeros' and _value(node.args[0], names) not in (3, 4)):
         raise _Unreadable(node)
     if name == 'dict':
-        if node.args or not all(keyword.arg for keyword in node.keywords):
+        if len(node.args) > 1:
             raise _Unreadable(node)
-        return {keyword.arg: _value(keyword.value, names) for keyword in node.keywords}
+        parts = [_table(each, names) for each in node.args]
+        parts += [{keyword.arg: _value(keyword.value, names)} if keyword.arg else
+                  _table(keyword.value, names) for keyword in node.keywords]
+        return {key: value for part in parts for key, value in part.items()}
     return _FUNCTIONS[name](*(_value(each, names) for each in node.args))
+
+
+def _table(node: ast.expr, names: Mapping[str, Any]) -> dict[Any, Any]:
+    """Return the dictionary that an expression stands for; raises _Unreadable."""
+    value = _value(node, names)
+    if not isinstance(value, dict):
+        raise _Unreadable(node)
+    return value
 
 
 def _array(values: Any) -> np.ndarray:

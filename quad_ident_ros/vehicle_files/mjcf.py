@@ -106,6 +106,10 @@ def _take_gravity(draft: Draft, model: Model) -> None:
     for option in model.root.all('option'):
         if 'gravity' in option.attributes:
             gravity, place = option.numbers('gravity', 3), option.place('gravity')
+        for flag in option.all('flag'):
+            if flag.get('gravity') == 'disable':
+                raise InputError(f'{flag.where}: without gravity no flight is in balance; take '
+                                 'gravity="disable" out')
     draft.take_gravity(float(np.linalg.norm(gravity)), place)
 
 
@@ -154,7 +158,11 @@ def _take_rotors(draft: Draft, model: Model, parts: Sequence[Part], pushes: Sequ
         draft.note('time constant of the thrust', lag, 's', f'{where} dynprm')
         draft.assumed.append(f'the lag of {lag:g} s is one of the thrust; it is taken as that of '
                              'the speed, which is the same for small changes')
-    draft.effects = lambda _: {'motor_lag': {'time_constant': lag}, **faults(losses)}
+    delay = common(thrusts, [push.delay for push in thrusts], 'delay')
+    if delay > 0.0:
+        draft.note('delay of the controls', delay, 's', f'{where} delay')
+    draft.effects = lambda _: {'motor_lag': {'time_constant': lag},
+                               'actuation_delay': {'delay': delay}, **faults(losses)}
 
 
 def _lines_of(thrusts: Sequence[Push]) -> str:
@@ -187,11 +195,15 @@ def _take_limits(draft: Draft, thrusts: Sequence[Push], per_control: float, whol
 
 def _say_air(draft: Draft, model: Model, whole: Body) -> None:
     """Say that the drag of MuJoCo's fluid is left out, and how large it is."""
-    density = max((option.number('density', 0.0) for option in model.root.all('option')),
-                  default=0.0)
+    density, viscosity = (max((option.number(name, 0.0) for option in model.root.all('option')),
+                              default=0.0) for name in ('density', 'viscosity'))
+    moments = np.linalg.eigvalsh(whole.inertia)
+    sides = np.sqrt(np.maximum(6.0 * (moments.sum() - 2.0 * moments), 0.0) / whole.mass)
+    if viscosity > 0.0:
+        draft.assumed.append(
+            f"MuJoCo's fluid (viscosity {viscosity:g} Pa s) is left out: a drag of "
+            f'{3.0 * math.pi * viscosity * np.mean(sides):.2g} N at 1 m/s, with its speed')
     if density > 0.0:
-        moments = np.linalg.eigvalsh(whole.inertia)
-        sides = np.sqrt(np.maximum(6.0 * (moments.sum() - 2.0 * moments), 0.0) / whole.mass)
         most = 0.5 * density * float(np.max(np.prod(sides) / np.maximum(sides, 1e-9)))
         draft.assumed.append(
             f"MuJoCo's fluid (density {density:g} kg/m3) is left out: a drag on the box of the "

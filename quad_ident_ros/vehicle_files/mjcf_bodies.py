@@ -11,7 +11,7 @@ import numpy as np
 
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.vehicle_files.bodies import Body, check_body, combined, Pose, pose, symmetric
-from quad_ident_ros.vehicle_files.mjcf_defaults import Model, onto
+from quad_ident_ros.vehicle_files.mjcf_defaults import Model
 from quad_ident_ros.vehicle_files.mjcf_shapes import SHELLS, SOLIDS
 from quad_ident_ros.vehicle_files.xml_tree import Element
 
@@ -80,9 +80,11 @@ def _parts(model: Model, element: Element, place: Pose, inherited: str) -> Itera
             geoms.append((frame, model.whole(child, held)))
         elif child.tag == 'site':
             site = model.whole(child, held)
-            if 'fromto' in site.attributes or not child.get('name'):
-                continue    # a line, or one that no actuator can name: nothing acts there
-            sites[child.get('name')] = place @ frame @ model.pose_of(site), child
+            if not child.get('name'):
+                continue    # no actuator can name it: nothing acts there
+            within = (model.along(site)[0] if 'fromto' in site.attributes else
+                      model.pose_of(site))
+            sites[child.get('name')] = place @ frame @ within, child
         elif child.tag == 'body':
             below.append((frame, child, held))
     body, source = _inertia(model, element, geoms)
@@ -150,12 +152,9 @@ def _shape(model: Model, geom: Element) -> Body:
     count = shape.sizes
     frame = model.pose_of(geom)
     if 'fromto' in geom.attributes:
-        ends = geom.numbers('fromto', 6)
-        along = ends[3:] - ends[:3]
-        length = float(np.linalg.norm(along))
-        if kind == 'sphere' or not length > 0.0:
+        frame, length = model.along(geom)
+        if kind == 'sphere':
             raise InputError(f'{geom.where}: fromto: no {kind} lies between these points')
-        frame = pose((ends[:3] + ends[3:]) / 2.0, onto(along / length))
         across = geom.numbers('size', max(len(geom.get('size').split()), 1))
         size = np.array([*across[:1], *(across[:1] if count == 3 else ()), length / 2.0])
     else:

@@ -18,6 +18,11 @@ from quad_ident_ros.vehicle_files.xml_tree import Element
 ACTUATORS = ('general', 'motor', 'position', 'velocity', 'intvelocity', 'damper', 'cylinder',
              'muscle', 'adhesion', 'plugin')
 MAIN = 'main'
+# What these shortcuts set of the actuators of a default class that holds them.
+_FIXED = {'gainprm': '1', 'gaintype': 'fixed', 'biastype': 'none', 'dyntype': 'none',
+          'dynprm': '1'}
+_BIASED = {'gaintype': 'fixed', 'biastype': 'affine'}
+_PART_BY_PART = 'size', 'gear'     # an element with fewer numbers has the others of its class
 _TURNS = ('euler', 'axisangle', 'xyaxes', 'zaxis', 'quat')
 _AXES = {'x': (1, 0, 0), 'y': (0, 1, 0), 'z': (0, 0, 1)}
 
@@ -59,11 +64,25 @@ class Model:
         usual = dict(self.classes[name].get(tag, {}))
         if any(turn in element.attributes for turn in _TURNS):
             usual = {key: value for key, value in usual.items() if key not in _TURNS}
-        return replace(element, attributes={**usual, **element.attributes})
+        attributes = {**usual, **element.attributes}
+        for key in usual.keys() & element.attributes.keys() & set(_PART_BY_PART):
+            stated = element.get(key).split()
+            attributes[key] = ' '.join([*stated, *usual[key].split()[len(stated):]])
+        return replace(element, attributes=attributes)
 
     def pose_of(self, element: Element) -> Pose:
         """Return the Pose that the attributes of an element state; InputError."""
         return pose(element.numbers('pos', 3, (0.0, 0.0, 0.0)), self.rotation_of(element))
+
+    def along(self, element: Element) -> tuple[Pose, float]:
+        """Return the Pose and the length, m, of an element between two points (fromto)."""
+        ends = element.numbers('fromto', 6)
+        back = ends[:3] - ends[3:]      # MuJoCo has z point from the second to the first
+        length = float(np.linalg.norm(back))
+        if not length > 0.0:
+            raise InputError(f'{element.where}: fromto: no {element.get("type", "sphere")} lies '
+                             'between these points')
+        return pose((ends[:3] + ends[3:]) / 2.0, onto(back / length)), length
 
     def rotation_of(self, element: Element) -> np.ndarray:
         """Return the rotation (3, 3) that the attributes of an element state; InputError."""
@@ -132,7 +151,9 @@ def _enter(classes: dict[str, dict[str, dict[str, str]]], element: Element, name
     for child in element.children:
         if child.tag != 'default':
             tag = 'actuator' if child.tag in ACTUATORS else child.tag
-            inside.setdefault(tag, {}).update(child.attributes)
+            sets = (_FIXED if child.tag == 'motor' else
+                    _BIASED if tag == 'actuator' and child.tag != 'general' else {})
+            inside.setdefault(tag, {}).update({**sets, **child.attributes})
     classes[name] = inside
     for child in element.all('default'):
         if not child.get('class'):

@@ -29,8 +29,10 @@ def _children(element: Element, folder: Path, beside: str, seen: set[Path]) -> I
             yield _expanded(child, folder, beside, seen)
             continue
         name = child.get('file')
-        # Names count from the folder of the whole model, as in MuJoCo, which takes each file once.
-        path = folder / name
+        # As in MuJoCo, names count from the folder of the whole model, or else from that of the
+        # file that has them, and each file is taken once.
+        path = next((each for each in (folder / name, Path(child.path).parent / name)
+                     if is_file(each)), folder / name)
         if not is_file(path):
             raise InputError(f'{child.where}: {name[:100]!r} is not beside the model; put it '
                              'there, or save the whole model with `mj_saveLastXML`')

@@ -14,6 +14,8 @@ from quad_ident_ros.vehicle_files.mjcf_defaults import Model
 from quad_ident_ros.vehicle_files.weak_rotors import SAME
 from quad_ident_ros.vehicle_files.xml_tree import Element, SHOWN
 
+STEP = 0.002    # s, of MuJoCo where a model does not say it
+
 
 @dataclass(frozen=True)
 class Push:
@@ -21,7 +23,8 @@ class Push:
     What an actuator does at a site, per unit of its control.
 
     site: its name; force (3,) N, moment (3,) N m, axes of the vehicle's body; place (3,) m; limits
-    of the control, infinite where it has none; lag: time constant s of the force, 0 for none.
+    of the control, infinite where it has none; lag: time constant s of the force, 0 for none;
+    delay: of the control, s.
     """
 
     element: Element
@@ -31,6 +34,7 @@ class Push:
     place: np.ndarray
     limits: tuple[float, float]
     lag: float
+    delay: float
 
     @property
     def pushes(self) -> bool:
@@ -41,6 +45,11 @@ class Push:
 def pushes_of(model: Model, sites: dict[str, tuple[Pose, Element]]) -> list[Push]:
     """Return what the actuators do at the sites (Pose in body axes) of a vehicle; InputError."""
     known = {element.get('name') for element in model.root.walk() if element.tag == 'site'}
+    options = model.root.all('option')
+    off = {group for option in options for group in option.get('actuatorgroupdisable').split()}
+    for flag in (flag for option in options for flag in option.all('flag')):
+        if flag.get('actuation') == 'disable':
+            raise InputError(f'{flag.where}: actuation="disable" stops all rotors; take it out')
     found = []
     for holder in model.root.all('actuator'):
         for child in holder.children:
@@ -49,7 +58,8 @@ def pushes_of(model: Model, sites: dict[str, tuple[Pose, Element]]) -> list[Push
                                  'model; correct the name')
             if child.get('site') in sites and child.tag in ('motor', 'general'):
                 element = model.whole(child, '')
-                found.append(_push(model, element, sites[child.get('site')][0]))
+                if element.get('group', '0') not in off:
+                    found.append(_push(model, element, sites[child.get('site')][0]))
     return found
 
 
@@ -84,7 +94,24 @@ def _push(model: Model, element: Element, site: Pose) -> Push:
     lag = 0.0 if kind == 'none' else _first(element, 'dynprm')
     return Push(element, element.get('site'), gain * site.rotation @ gear[:3],
                 gain * site.rotation @ gear[3:], site.position, _limits(model, element, gain),
-                lag)
+                lag, _delay(model, element))
+
+
+def step_of(model: Model) -> float:
+    """Return the time step of a model, s."""
+    steps = [option.number('timestep') for option in model.root.all('option')
+             if option.get('timestep')]
+    return steps[-1] if steps else STEP
+
+
+def _delay(model: Model, element: Element) -> float:
+    """Return the delay of a control, s; InputError where MuJoCo keeps no controls for so long."""
+    delay = element.number('delay', 0.0)
+    step = step_of(model)
+    if delay > element.number('nsample', 0.0) * step * (1.0 + SAME):
+        raise InputError(f'{element.where}: nsample is less than its delay of {delay:g} s takes '
+                         f'in steps of {step:g} s; increase it')
+    return delay
 
 
 def _first(element: Element, attribute: str) -> float:

@@ -108,7 +108,7 @@ def limited(model, controls):
 def thrusts(model, data):
     """Return the thrusts (n,) of the rotors as the actuators give them, N."""
     act = model.actuator_actadr[ACTUATORS]
-    signal = limited(model, data.ctrl[ACTUATORS])
+    signal = limited(model, {signal})
     for k in np.flatnonzero(act >= 0):
         signal[k] = data.act[act[k]]
     gear = np.linalg.norm(model.actuator_gear[ACTUATORS, :3], axis=1)
@@ -135,6 +135,10 @@ def forces(model, data):
     moment = axes @ (moment + np.cross(arms, push).sum(axis=0))
     mujoco.mj_applyFT(model, data, force, moment, centre, body, data.qfrc_passive)
 '''
+CONTROLS = 'data.ctrl[ACTUATORS]'
+DELAYED = """np.array([
+        mujoco.mj_readCtrl(model, data, k, data.time, np.zeros((1, 1)), 0).item()
+        for k in ACTUATORS])"""
 LAG = '''
 
 def lagging(model, data, controls):
@@ -188,13 +192,15 @@ class Rotors:
                    tuple(list(actuators).index(push.element.start) for push in pushes))
 
 
-def code(vehicle: Vehicle, wanted: Wanted, rotors: Rotors, model: str, lag: str) -> Code | None:
+def code(vehicle: Vehicle, wanted: Wanted, rotors: Rotors, model: str, lag: str,
+         delayed: bool) -> Code | None:
     """
     Return the program beside a model, or None where it is to do nothing.
 
     Args: vehicle: with its effects, its speeds in the unit of the file; wanted: what the file
     holds of it; model: the name of the file; lag: the form of motor_lag by which the speeds of the
-    rotors lag where the actuators of the file have their thrusts do so, or ''.
+    rotors lag where the actuators of the file have their thrusts do so, or ''; delayed: whether
+    the actuators of the file hold the delay of the commands.
     """
     count, radius = len(vehicle.rotors), vehicle.rotor_radius
     acting = {(effect, form): values for effect, form, values in forms_of(vehicle.effects)}
@@ -206,7 +212,7 @@ def code(vehicle: Vehicle, wanted: Wanted, rotors: Rotors, model: str, lag: str)
     lines += [LINES[key](acting[key], count, radius) for key in forms]
     if ('wind', 'steady') in acting and lines:
         forms.append(('wind', 'steady'))
-    delay = acting.get(('actuation_delay', 'pure_delay'), {}).get('delay', 0.0)
+    delay = 0.0 if delayed else wanted.delay
     if delay:
         forms.append(('actuation_delay', 'pure_delay'))
     if lag:
@@ -222,7 +228,7 @@ def code(vehicle: Vehicle, wanted: Wanted, rotors: Rotors, model: str, lag: str)
         given_said='and gives its commands by Commands().command.\n' if delay or lag else '',
         sites=list(rotors.sites), actuators=list(rotors.actuators),
         lifts=f'[{", ".join(map(_one, lifts))}]', wind=f'[{", ".join(map(_one, wanted.wind))}]',
-        lines=indent('\n'.join(lines), '    '))
+        signal=DELAYED if delayed else CONTROLS, lines=indent('\n'.join(lines), '    '))
     if lag:
         text += LAG.format(rise=_one(wanted.rise), fall=_one(wanted.fall))
     if delay or lag:

@@ -18,7 +18,7 @@ from quad_ident_ros.vehicle_files.mjcf import bodies_of, flying_body
 from quad_ident_ros.vehicle_files.mjcf_bodies import bounded, Part, parts_of
 from quad_ident_ros.vehicle_files.mjcf_defaults import Model, model_of
 from quad_ident_ros.vehicle_files.mjcf_include import parsed
-from quad_ident_ros.vehicle_files.mjcf_thrust import Push, pushes_of
+from quad_ident_ros.vehicle_files.mjcf_thrust import Push, pushes_of, step_of
 from quad_ident_ros.vehicle_files.mujoco_code import code as program
 from quad_ident_ros.vehicle_files.mujoco_code import Rotors
 from quad_ident_ros.vehicle_files.new_mjcf import new
@@ -26,7 +26,7 @@ from quad_ident_ros.vehicle_files.out_base import Base
 from quad_ident_ros.vehicle_files.out_body import body_for, MOMENTS, PRODUCTS
 from quad_ident_ros.vehicle_files.reading import Draft
 from quad_ident_ros.vehicle_files.target import Code, Target
-from quad_ident_ros.vehicle_files.ways import BODY, LAGS
+from quad_ident_ros.vehicle_files.ways import BODY, LAGS, why_not
 from quad_ident_ros.vehicle_files.xml_tree import Element
 
 GENERAL = {'gainprm': '1', 'gaintype': 'fixed', 'biastype': 'none'}
@@ -68,6 +68,7 @@ def write(base: Base) -> EditedXml:
     edited.lack(['speed_max'], 'a command is a thrust here, and speeds are not of the file')
     _write_thrusts(edited, base, thrusts)
     _write_lags(edited, base, thrusts, _filter(model))
+    _write_delay(edited, base, thrusts, step_of(model))
     return edited
 
 
@@ -80,7 +81,8 @@ def code(vehicle: Vehicle, base: Base, name: str) -> Code | None:
     pushes = pushes_of(model, {name: site for part in parts for name, site in part.sites.items()})
     places = [child.start for holder in model.root.all('actuator') for child in holder.children]
     return program(vehicle, base.wanted, Rotors.of([push for push in pushes if push.pushes],
-                                                   places), name, _form_of_lag(vehicle, base))
+                                                   places), name, _form_of_lag(vehicle, base),
+                   _delay_in_file(base))
 
 
 def _form_of_lag(vehicle: Vehicle, base: Base) -> str:
@@ -143,6 +145,28 @@ def _write_lags(edited: EditedXml, base: Base, thrusts: list[Push], kind: str) -
             if not push.lag:
                 edited.word(push.element, 'dyntype', kind)
         _make_general(edited, [push.element for push in thrusts if push.element.tag == 'motor'])
+
+
+def _delay_in_file(base: Base) -> bool:
+    """Whether a file holds the delay: where it has one, and the code does not lag behind it."""
+    wanted = base.wanted
+    lag_of_file = wanted.rise == wanted.fall and not differs(
+        base.effect('motor_lag', 'time_constant'), wanted.lag)
+    return base.effect('actuation_delay', 'delay') > 0.0 and lag_of_file
+
+
+def _write_delay(edited: EditedXml, base: Base, thrusts: Sequence[Push], step: float) -> None:
+    """Have the actuators hold the delay of the commands; step: of the model, s."""
+    delay = base.wanted.delay if _delay_in_file(base) else 0.0
+    if base.wanted.delay > 0.0 and not delay:
+        edited.lack(['delay'], why_not('actuation_delay'))
+    if not base.effect('actuation_delay', 'delay'):
+        return
+    for push in thrusts:
+        edited.attribute(push.element, 'delay', [delay], 's', base.wanted.sources['delay'])
+        needed = math.ceil(delay / step * (1.0 - SAME))
+        if push.element.number('nsample') < needed:
+            edited.word(push.element, 'nsample', str(needed))
 
 
 def _make_general(edited: EditedXml, motors: Sequence[Element]) -> None:
@@ -227,4 +251,4 @@ def _principal(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 TARGET = Target('mjcf', ('.xml', '.mjcf'),
-                frozenset((*BODY, *LAGS, 'thrust', 'losses', 'torque')), write, new, code)
+                frozenset((*BODY, *LAGS, 'thrust', 'losses', 'torque', 'delay')), write, new, code)

@@ -3,7 +3,7 @@
 """SDF models of Gazebo with motor plugins."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 import os
 from pathlib import Path
 
@@ -223,20 +223,20 @@ def _models(holder: Element, source: Source) -> Iterator[tuple[str, Element, Ele
     """
     Give the models of a world or a file: name, the element that places it, the <model>.
 
-    Of those that a world includes, the ones that exist.
+    Of those that a world includes, the ones that exist or that it puts motors on.
     """
     yield from ((model.get('name'), model, model) for model in holder.all('model')
                 if not (model.first('static') is not None
                         and child_text(model, 'static') in ('true', '1')))
     for include in holder.all('include'):
         uri = child_text(include, 'uri')
-        if _found(source.path, uri) is not None:
+        if _found(source.path, uri) is not None or motor_plugins(include):
             model = _included(include)
             yield name_of(include, model), include, model
 
 
 def _included(element: Element) -> Element:
-    """Return the <model> of the file that an <include> names; InputError."""
+    """Return the <model> of the file that an <include> names, with its plugins; InputError."""
     uri = child_text(element, 'uri')
     found = _found(element.path, uri)
     if found is None:
@@ -246,7 +246,11 @@ def _included(element: Element) -> Element:
     models = parse(str(found), text_of(found)).all('model')
     if len(models) != 1:
         raise InputError(f'{found}: expected one <model>, got {len(models)}')
-    return models[0]
+    changes = element.first('experimental:params')
+    if changes is not None:
+        raise InputError(f'{changes.where}: what it changes in the included model is not read; '
+                         'give the whole model as `gz sdf -p` prints it')
+    return replace(models[0], children=[*models[0].children, *element.all('plugin')])
 
 
 def _found(path: str, uri: str) -> Path | None:

@@ -51,7 +51,11 @@ class Link:
 
 
 def trees_of(root: Element) -> dict[str, dict[str, Link]]:
-    """Return {root link: {link: Link}} of the trees in a <robot>; InputError."""
+    """
+    Return {root link: {link: Link}} of the trees in a <robot>; InputError.
+
+    What moves by a floating joint flies: it is a tree of its own.
+    """
     for element in root.walk():
         for value in (element.text, *element.attributes.values()):
             if '${' in value or '$(' in value:
@@ -68,6 +72,7 @@ def trees_of(root: Element) -> dict[str, dict[str, Link]]:
         if other is not joint:
             raise InputError(f'{joint.where}: its child is attached to the joint in line '
                              f'{other.line} too; a URDF is a tree')
+    above = {child: joint for child, joint in above.items() if joint.get('type') != 'floating'}
     trees: dict[str, dict[str, Link]] = {}
     for name in links:
         _place(name, links, above, trees)

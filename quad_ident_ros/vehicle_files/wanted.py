@@ -30,7 +30,7 @@ class Wanted:
     and air velocity across its axis; linear_drag (3,) N/(m/s); body_drag (3,) kg/m; inflow:
     kg/rad, thrust of a rotor lost per its speed and air velocity along its axis, and kg/m, won
     per square of that across it; flapping kg m/rad, moment per speed of a rotor and air velocity;
-    wind (3,) m/s.
+    wind (3,) m/s; delay of the commands, s.
     sources: what each comes from, by key.
     """
 
@@ -51,6 +51,7 @@ class Wanted:
     inflow: tuple[float, float]
     flapping: float
     wind: np.ndarray
+    delay: float
     sources: dict[str, str]
 
     @property
@@ -105,6 +106,7 @@ def wanted_of(vehicle: Vehicle, sag: float | None, holds: Collection[Key]) -> Wa
                 inflow.get('translational', 0.0) / len(vehicle.rotors)),
         flapping=(flaps.get('coefficient', 0.0) + flaps.get('hub_coefficient', 0.0)) / speeds,
         wind=np.array([wind.get(axis, 0.0) for axis in 'xyz']),
+        delay=effects.get('actuation_delay', {}).get('delay', 0.0),
         sources=_sources(vehicle, sag, holds))
 
 
@@ -138,7 +140,8 @@ def _sources(vehicle: Vehicle, sag: float | None, holds: Collection[Key]) -> dic
         'mass': ['mass'], 'centre': [], 'inertia': ['inertia'], 'thrust': ['thrust_coefficient'],
         'torque': ['torque_coefficient'], 'speed_max': ['speed_max'], 'rise': [], 'fall': [],
         'rotor_drag': [], 'exponent': [], 'losses': [], 'linear_drag': ['linear_drag'],
-        'body_drag': [], 'inflow': [], 'flapping': [], 'wind': []}
+        'body_drag': [], 'inflow': [], 'flapping': [], 'wind': [],
+        'delay': []}
     if any(vehicle.linear_drag) and 'linear_drag' not in holds:
         names['rotor_drag'].append('linear_drag')
     for effect, form, _ in forms_of(vehicle.effects):
@@ -150,5 +153,6 @@ def _sources(vehicle: Vehicle, sag: float | None, holds: Collection[Key]) -> dic
     names['centre'] = names['centre'] or names['mass']
     usual = {'rise': 'motor_lag', 'fall': 'motor_lag', 'rotor_drag': 'rotor_drag',
              'exponent': 'thrust_scale', 'losses': 'rotor_fault', 'body_drag': 'body_drag',
-             'inflow': 'inflow', 'flapping': 'blade_flapping', 'wind': 'wind'}
+             'inflow': 'inflow', 'flapping': 'blade_flapping', 'wind': 'wind',
+             'delay': 'actuation_delay'}
     return {key: ', '.join(found) or f'no {usual[key]}' for key, found in names.items()}

@@ -13,7 +13,7 @@ from quad_ident_ros.effects.registry import EFFECTS, FORMS, Values
 
 Key = Literal['mass', 'centre', 'inertia', 'thrust', 'exponent', 'losses', 'torque', 'speed_max',
               'rise', 'fall', 'rotor_drag', 'linear_drag', 'body_drag', 'inflow', 'flapping',
-              'wind']
+              'wind', 'delay']
 Keys = tuple[Key, ...]
 BODY: Keys = ('mass', 'centre', 'inertia')
 LAGS: Keys = ('rise', 'fall')
@@ -43,6 +43,7 @@ WAYS: dict[tuple[str, str], tuple[Way, ...]] = {
     ('body_drag', 'planar'): (_BODY_DRAG,),
     ('body_drag', 'axes'): (_BODY_DRAG,),
     ('wind', 'steady'): (Way(('wind',)),),
+    ('actuation_delay', 'pure_delay'): (Way(('delay',)),),
     ('inflow', 'linear'): (Way(('inflow',)),),
     ('blade_flapping', 'hub_moment'): (Way(('flapping',)),),
     ('blade_flapping', 'damped_hub'): (Way(('flapping',), 'its moment with the velocity; the '

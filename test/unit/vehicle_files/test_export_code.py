@@ -9,6 +9,7 @@ from effect_flights import roll, state, steps
 from exported import base
 import numpy as np
 import pytest
+from test_vehicle_files_mjcf import DELAYED
 
 from quad_ident_ros.cli.main import main
 from quad_ident_ros.effects.registry import vector
@@ -17,6 +18,7 @@ from quad_ident_ros.model.motors import rotor_speeds
 from quad_ident_ros.model.rigid_body import derivatives, INPUT, rotor_table, vehicle_vector
 from quad_ident_ros.model.vehicle import load_vehicle, write_vehicle
 from quad_ident_ros.vehicle_files.export import export
+from quad_ident_ros.vehicle_files.load import read_vehicle
 from quad_ident_ros.vehicle_files.mujoco_code import LINES
 from quad_ident_ros.vehicle_files.source import Source
 from quad_ident_ros.vehicle_files.ways import forms_of
@@ -108,6 +110,26 @@ def test_accelerations_are_those_of_our_equations(effects):
         mujoco.mj_forward(model, data)
         np.testing.assert_allclose(data.qacc, accelerations(vehicle, start, speeds), rtol=1e-9,
                                    atol=1e-9)
+
+
+def test_the_code_has_the_delayed_thrusts_of_a_file_that_delays():
+    source = Source('quad.xml', DELAYED)
+    vehicle = read_vehicle(source).vehicle
+    drag = {'rotor_drag': {'coefficient': 0.2}}     # goes with the speed of the rotors
+    mujoco, model, space, found = model_of(
+        replace(vehicle, effects={**vehicle.effects, **drag}), source)
+    assert [fate.name for fate in found.fates.by_code] == ['rotor_drag']
+    assert 'Commands' not in found.code.text
+    data = mujoco.MjData(model)
+    lifts = []
+    for given in (3.0, 4.0, 5.0):
+        data.ctrl[:] = given
+        for _ in range(round(0.02 / model.opt.timestep)):
+            mujoco.mj_step(model, data)
+        lifts.append(space['thrusts'](model, data)[0])
+    # At the time after a step acts what was given 0.02 s before it.
+    assert lifts == [3.0, 4.0, 5.0]
+    np.testing.assert_allclose(data.actuator_force, 4.0)
 
 
 @pytest.mark.parametrize('effects', [

@@ -28,6 +28,7 @@ from quad_ident_ros.vehicle_files.bodies import (
     symmetric,
     turned,
 )
+from quad_ident_ros.vehicle_files.export import export
 from quad_ident_ros.vehicle_files.kinds import kind_of, KINDS
 from quad_ident_ros.vehicle_files.load import load_any_vehicle, read_vehicle, source_of
 from quad_ident_ros.vehicle_files.reading import Draft, finished
@@ -223,6 +224,13 @@ def test_a_file_in_the_home_folder_is_found_by_its_sign(tmp_path, monkeypatch):
     assert source_of('~/params.py:heavy').path == str(path)
 
 
+@pytest.mark.filterwarnings('error')
+def test_what_python_warns_of_in_a_file_is_not_shown(tmp_path):
+    text = '"""Thrust over \\Omega."""\n' + PARAMETERS
+    path = written(tmp_path, text)
+    assert load_any_vehicle(path).mass == 0.5
+
+
 def test_a_python_file_is_not_run(tmp_path):
     witness = tmp_path / 'run'
     text = f'open({str(witness)!r}, "w")\n' + PARAMETERS
@@ -239,6 +247,29 @@ def test_of_several_vehicles_one_is_named(tmp_path):
     assert load_any_vehicle(f'{path}:heavy').mass == 2.0
     with pytest.raises(InputError, match="named 'light'; give one of quad_params"):
         load_any_vehicle(f'{path}:light')
+
+
+@pytest.mark.parametrize('made', [
+    "{**quad_params, 'mass': 2.0}", "quad_params | {'mass': 2.0}", 'dict(quad_params, mass=2.0)',
+    "{'k_m': 0.0, **quad_params.copy(), **dict(mass=2.0)}",
+    "dict(**copy.deepcopy(quad_params) | {'mass': 2.0})"])
+def test_a_dictionary_made_of_another_is_a_second_vehicle(tmp_path, made):
+    path = written(tmp_path, f'{PARAMETERS}heavy = {made}\n')
+    assert 'several vehicles are in it (quad_params, heavy)' in refused(
+        path.read_text(), 'params.py')
+    one, other = (load_any_vehicle(f'{path}:{name}') for name in ('quad_params', 'heavy'))
+    assert other.mass == 2.0
+    assert (other.inertia, other.rotors, other.torque_coefficient) == (
+        one.inertia, one.rotors, one.torque_coefficient)
+    with pytest.raises(InputError, match='heavy is not written out; write heavy = '):
+        export(one, 'rotorpy', source_of(f'{path}:heavy'))
+
+
+def test_a_copy_that_is_changed_and_one_of_unknown_numbers_are_not_passed_over():
+    copied = PARAMETERS + "heavy = quad_params.copy()\nheavy['mass'] = 2.0\n"
+    assert 'heavy is changed here, which is not followed' in refused(copied, 'params.py')
+    measured = PARAMETERS + "heavy = {**quad_params, 'mass': measured()}\n"
+    assert 'measured() is not a number that can be read' in refused(measured, 'params.py')
 
 
 def test_what_is_missing_is_named_and_can_be_supplied():

@@ -4,6 +4,7 @@
 
 from dataclasses import replace
 import math
+import re
 
 import numpy as np
 import pytest
@@ -148,6 +149,12 @@ def test_of_two_vehicles_one_is_named():
     ('</mujoco>', '', 'is not complete XML'),
     ('<mujoco model="test">', '<!DOCTYPE a [<!ENTITY b "c">]><mujoco model="test">', '(DTD)'),
     ('ctrlrange="0 13"', 'ctrlrange="0 0"', 'leave no thrust; correct ctrlrange'),
+    ('<default>', '<option><flag gravity="disable"/></option><default>',
+     'line 3: <flag>: without gravity no flight is in balance'),
+    ('<default>', '<option><flag actuation="disable"/></option><default>',
+     'line 3: <flag>: actuation="disable" stops all rotors'),
+    ('ctrlrange="0 13"', 'ctrlrange="0 13" delay="0.02" nsample="9"',
+     'nsample is less than its delay of 0.02 s takes in steps of 0.002 s'),
     ('autolimits="true"', 'settotalmass="abc"', "settotalmass[0]: expected a number, got 'abc'"),
 ])
 def test_a_bad_model_is_refused_with_its_line(old, new, said):
@@ -184,10 +191,61 @@ def test_an_inertia_below_the_bound_of_the_compiler_is_not_exported():
         export(replace(vehicle, inertia=(0.02, 0.03, 0.04)), 'mujoco', source)
 
 
+DELAYED = model().replace('ctrlrange="0 13"', 'ctrlrange="0 13" delay="0.02" nsample="10"')
+
+
+def test_a_delay_of_the_controls_is_one_of_the_commands_and_goes_back_into_the_file():
+    source = Source('quad.xml', DELAYED)
+    vehicle = read_vehicle(source).vehicle
+    assert vehicle.effects == {'actuation_delay': {'delay': 0.02}}
+    assert export(vehicle, 'mujoco', source).text == DELAYED
+    for delay in (0.0, 0.01, 0.05):
+        effects = {'actuation_delay': {'delay': delay}} if delay else {}
+        found = export(replace(vehicle, effects=effects), 'mujoco', source)
+        assert found.code is None and not found.fates.not_carried
+        assert {change.new for change in found.changes} == {delay}
+        assert read_vehicle(Source('quad.xml', found.text)).vehicle.effects == effects
+
+
+def test_groups_of_actuators_that_are_disabled_do_not_act():
+    spare = '<motor site="spare" class="quad" gear="0 0 1 0 0 0.02" group="3"/></actuator>'
+    text = model(INERTIAL + '<site name="spare" pos="0.3 0 0"/>').replace('</actuator>', spare)
+    assert len(reading(text).vehicle.rotors) == 5
+    off = text.replace('<default>', '<option actuatorgroupdisable="1 3"/><default>', 1)
+    assert reading(off).vehicle == reading(model()).vehicle
+
+
+def test_numbers_that_an_element_leaves_out_are_those_of_its_class():
+    text = model(actuators=motors('0 0 1')).replace(
+        '<motor ctrlrange="0 13"/>', '<motor ctrlrange="0 13" gear="0 0 2 0 0 0.02"/>')
+    text = text.replace('name="m0" site="thrust0" gear="0 0 1"',
+                        'name="m0" site="thrust0" gear="0 0 1 0 0 -0.02"')
+    source = Source('quad.xml', text)
+    vehicle = read_vehicle(source).vehicle
+    assert [rotor.spin for rotor in vehicle.rotors] == [-1, 1, 1, 1]
+    assert vehicle.torque_coefficient == pytest.approx(0.02 * vehicle.thrust_coefficient)
+    heavier = replace(vehicle, thrust_coefficient=1.1 * vehicle.thrust_coefficient,
+                      torque_coefficient=1.2 * vehicle.torque_coefficient)
+    read = read_vehicle(Source('quad.xml', export(heavier, 'mujoco', source).text)).vehicle
+    assert read.thrust_coefficient == pytest.approx(heavier.thrust_coefficient, rel=1e-9)
+    assert read.torque_coefficient == pytest.approx(heavier.torque_coefficient, rel=1e-9)
+
+
+def test_a_class_with_a_position_servo_makes_no_rotor_of_a_general():
+    text = model(actuators=motors(tag='general', extra='ctrlrange="0 13"')).replace(
+        '<motor ctrlrange="0 13"/>', '<position kp="7"/>')
+    assert 'its force depends on more than its control' in refused(text, 'quad.xml')
+    # A <motor> of a class has the gain of a motor, whatever stands before it.
+    text = text.replace('<position kp="7"/>', '<general gainprm="7"/><motor ctrlrange="0 13"/>')
+    assert reading(text).vehicle == reading(model()).vehicle
+
+
 def test_forces_that_are_left_out_are_said():
     text = model().replace('<freejoint/>', '<joint type="free" damping="0.1"/>').replace(
         '<body name="quad"', '<body name="quad" gravcomp="0.5"')
+    text = text.replace('<default>', '<option viscosity="0.002"/><default>', 1)
     said = ' '.join(reading(text).assumed)
+    assert 'viscosity 0.002 Pa s) is left out: a drag of 0.0067 N at 1 m/s' in said
     assert 'damping: this force on the joint is left out' in said
     assert 'gravcomp: it is left out' in said
     assert 'left out' not in ' '.join(reading(model()).assumed)
@@ -207,6 +265,20 @@ def test_what_a_scene_includes_is_read(tmp_path):
     scene.write_text('<mujoco>\n<include file="x2.xml"/>\n<include file="x2.xml"/></mujoco>')
     said = refused(scene.read_text(), str(scene))
     assert "line 3: <include>: 'x2.xml' is included twice" in said
+
+
+def test_what_an_included_file_includes_may_stand_beside_it(tmp_path, monkeypatch):
+    (tmp_path / 'parts').mkdir()
+    (tmp_path / 'parts/x2.xml').write_text('<mujoco><include file="world.xml"/></mujoco>')
+    for folder, gravity in (('parts', 5), ('.', 3)):    # the folder of the model goes first
+        (tmp_path / folder / 'world.xml').write_text(
+            f'<mujoco><option gravity="0 0 -{gravity}"/></mujoco>')
+        scene = tmp_path / 'scene.xml'
+        scene.write_text(model(before='<include file="parts/x2.xml"/>'))
+        assert read_vehicle(source_of(scene)).vehicle.gravity == gravity
+        monkeypatch.chdir(tmp_path)     # where MuJoCo puts its log
+        mujoco = pytest.importorskip('mujoco', reason='MuJoCo is not installed')
+        assert mujoco.MjModel.from_xml_path(str(scene)).opt.gravity[2] == -gravity
 
 
 def test_it_is_told_by_its_content():
@@ -291,9 +363,16 @@ def test_a_hollow_ellipsoid_is_that_of_mujoco(size, tmp_path, monkeypatch):
                                rtol=2e-4)
 
 
-def test_a_wrench_is_that_of_mujoco():
+FROMTO = model(actuators=motors('0 0 -1.5 0 0 -{}').replace('0.02', '0.03').replace('--', ''))
+FROMTO = re.sub(r'pos="(\S+ \S+) 0.05"/>',
+                r'type="capsule" size="0.01" fromto="\1 0 \1 0.1"/>', FROMTO)
+
+
+@pytest.mark.parametrize('text', [
+    model(actuators=motors('0 0 1.5 0 0 {}').replace('0.02', '0.03')), FROMTO],
+    ids=['points', 'lines'])
+def test_a_wrench_is_that_of_mujoco(text):
     mujoco = pytest.importorskip('mujoco', reason='MuJoCo is not installed')
-    text = model(actuators=motors('0 0 1.5 0 0 {}').replace('0.02', '0.03'))
     theirs = mujoco.MjModel.from_xml_string(text)
     data = mujoco.MjData(theirs)
     controls = np.array([3.0, 4.0, 5.0, 6.0])

@@ -208,6 +208,7 @@ def test_the_wrench_is_that_of_drone_models(library):
     ('[0.0, 0.0, 3e-5]', '[0.0, 0.0, 9e-5]', 'line 6: J: no body has this inertia'),
     ('[0.0, 2e-5, 0.0]', '[1e-6, 2e-5, 0.0]', 'an inertia matrix is symmetric'),
     ('3e-10]', '-3e-10]', 'no speed gives 0.1 N; correct the curve'),
+    ('3e-10]', '1e-320]', 'no speed gives 0.1 N; correct the curve'),
     ('[6.0, 1e-4, 0.0, 2e-4]', '[0.0, 0.0, 0.0, 2e-4]', 'no lag: rates of 0 and'),
     ('[-1.0,  1.0, -1.0,  1.0]', '[-1.0,  1.0, -1.0,  0.0]', 'mixing_matrix[2]: 0.0 is not one'),
     ('mass = 0.04', 'mass = = 0.04', 'is not TOML'),

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Vehicles in SDF models of Gazebo."""
 
+from dataclasses import replace
 import math
 import re
 
@@ -12,6 +13,7 @@ from refusing import refused
 from quad_ident_ros.effects.registry import mapping, vector
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.vehicle_files.bodies import about
+from quad_ident_ros.vehicle_files.export import export
 from quad_ident_ros.vehicle_files.kinds import kind_of
 from quad_ident_ros.vehicle_files.load import load_any_vehicle, read_vehicle
 from quad_ident_ros.vehicle_files.source import Source
@@ -160,6 +162,31 @@ def test_an_included_model_beside_it_is_read(tmp_path, merge):
     links = {entry.key: entry.place for entry in found.read if entry.key.startswith('link')}
     assert len(links) == 5
     assert all(place.startswith('../quad_base/model.sdf line') for place in links.values())
+
+
+@pytest.mark.parametrize('merge', [True, False])
+def test_motors_that_an_include_puts_on_a_model_are_read_and_written(tmp_path, merge):
+    (tmp_path / 'quad_base').mkdir()
+    (tmp_path / 'quad_base' / 'model.sdf').write_text(model(bodies(), name='quad_base'))
+    inside = f'<include><uri>model://quad_base</uri>{motors()}</include>'
+    text = model(inside.replace('<include>', "<include merge='true'>")) if merge else (
+        f"<sdf version='1.9'><world name='w'>{inside}</world></sdf>")
+    top = tmp_path / 'worlds' / 'w.sdf'
+    top.parent.mkdir()
+    top.write_text(text)
+    vehicle = load_any_vehicle(top)
+    assert vehicle.rotors == reading(WHOLE).vehicle.rotors
+    assert vehicle.effects == reading(WHOLE).vehicle.effects
+    found = export(replace(vehicle, thrust_coefficient=9e-06), 'gazebo',
+                   Source(str(top), text))
+    top.write_text(found.text)
+    assert load_any_vehicle(top).thrust_coefficient == pytest.approx(9e-06, rel=1e-9)
+    top.write_text(text.replace('quad_base<', 'another<'))
+    with pytest.raises(InputError, match='<include>: model://another was not found beside'):
+        load_any_vehicle(top)
+    top.write_text(text.replace('</include>', '<experimental:params/></include>'))
+    with pytest.raises(InputError, match='<experimental:params>: what it changes .* is not read'):
+        load_any_vehicle(top)
 
 
 def test_an_include_that_is_not_there_is_named_with_how_to_mend_it():

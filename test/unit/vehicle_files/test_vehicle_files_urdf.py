@@ -104,6 +104,16 @@ def test_a_plain_urdf_has_mass_and_places_and_asks_for_the_rest():
     assert reading(drone(axis=-1)).missing == found.missing
 
 
+def test_what_floats_in_a_world_is_the_vehicle_in_its_own_axes():
+    world = '<link name="world"/><joint name="flies" type="floating"><parent link="world"/>' \
+            '<child link="base_link"/><origin xyz="1 2 3" rpy="0 0 1.57"/></joint>'
+    supplied = {'thrust_coefficient': 8e-6, 'torque_over_thrust': 0.02, 'spins': [-1, -1, 1, 1]}
+    found = reading(drone(extra=world), supplied=supplied)
+    alone = reading(drone(), supplied=supplied)
+    assert found.vehicle == alone.vehicle
+    assert found.assumed == alone.assumed
+
+
 def test_a_command_that_needs_the_rest_says_how_to_supply_it(tmp_path):
     path = tmp_path / 'drone.urdf'
     path.write_text(drone())
