@@ -260,7 +260,7 @@ def _mean(found: Diagnosis, nuisance: str) -> np.ndarray:
 def _sag(found: Diagnosis) -> str:
     """Return the fall of thrust with its probability, in words."""
     row = _row(found, 'battery_sag')
-    values = ' and '.join(f'{name} {one.value:.3g} {one.unit}'
+    values = ' and '.join(f'{name} {one.value:.3g} {one.unit}'.removesuffix(' 1')
                           for name, one in row.parameters.items())
     return f'{values} ({row.probability:.2f})' if values else 'none'
 

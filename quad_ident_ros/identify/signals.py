@@ -247,7 +247,8 @@ def _even_grid(t: np.ndarray, inputs: np.ndarray, measured: np.ndarray
     missing = len(grid) - len(t)
     if missing > MISSING_SHARE * len(grid):
         raise InputError(f'{missing} of {len(grid)} samples are missing; at most '
-                         f'{MISSING_SHARE:.0%} can be filled: record again with a deeper queue')
+                         f'{100 * MISSING_SHARE:.0f} % can be filled: record again with a '
+                         'deeper queue')
     columns = np.column_stack([np.interp(grid, t, column) for column in measured.T])
     there = np.ones(len(grid), bool)
     if fits:

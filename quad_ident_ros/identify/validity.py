@@ -34,23 +34,28 @@ def validity(signal: Signal) -> Validity:
         return Validity(None, None, None, 'the record is too short to judge')
     limited = np.isinf(blocks.neglected)
     if limited.any():
-        return Validity(False, None, None, f'in {limited.mean():.0%} of the time rotors cannot '
-                        'give the input, which is beyond speed_min or speed_max of the vehicle '
-                        'file: the linear model does not hold there')
+        return Validity(False, None, None, f'for {100 * limited.mean():.0f} % of the time the '
+                        'rotors cannot give the input, which is beyond speed_min or speed_max of '
+                        'the vehicle file: the linear model does not hold there')
     if signal.attitude is None:
         return Validity(None, None, None, 'no attitude is recorded: U1 counts as vertical')
     tilt = float(blocks.tilt.max())
     if signal.output == 'z':
         share = float(blocks.neglected.max()) / GRAVITY
-        what = f'at a tilt of {np.degrees(tilt):.0f} deg drag is up to {share:.0%} of the thrust'
+        what = f'at a tilt of {np.degrees(tilt):.0f} deg, drag is up to {_of(share)} the thrust'
         if signal.at_rest:
             what += ', including the part of U1 that the tilt takes'
     else:
         usual = float(np.sqrt(np.mean(blocks.target ** 2)))
         share = float(np.sqrt(np.mean(blocks.neglected ** 2))) / usual if usual > 0 else 0.0
-        what = (f'at a tilt of {np.degrees(tilt):.0f} deg coupling with the other axes is up to '
-                f'{share:.0%} of the angular acceleration')
+        what = (f'at a tilt of {np.degrees(tilt):.0f} deg, coupling with the other axes is up to '
+                f'{_of(share)} the angular acceleration')
     holds = share <= LARGEST_SHARE
     return Validity(holds, share, tilt, f'{what}: the linear model '
-                    + ('holds' if holds else f'omits more than {LARGEST_SHARE:.0%} and does not '
-                       'hold'))
+                    + ('holds' if holds else f'omits more than {100 * LARGEST_SHARE:.0f} % '
+                       'and does not hold'))
+
+
+def _of(share: float) -> str:
+    """Return a share as it stands before what it is a share of; a large one is a multiple."""
+    return f'{100 * share:.0f} % of' if share < 10 else f'{share:.2g} times'

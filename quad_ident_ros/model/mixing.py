@@ -72,7 +72,7 @@ def infeasibility(vehicle: Vehicle, inputs: ArrayLike, t: np.ndarray) -> str | N
         return problem + f'the {len(vehicle.rotors)} rotors, as they are placed and spin, cannot'
     rotor = int(np.argmax(bad[k]))
     return (f'{problem}rotor {rotor + 1} would need a squared speed of {squared[k, rotor]:.6g} '
-            f'(rad/s)^2, possible are {vehicle.speed_min ** 2:.6g} to '
+            f'(rad/s)^2, which must be {vehicle.speed_min ** 2:.6g} to '
             f'{vehicle.speed_max ** 2:.6g}')
 
 

@@ -64,7 +64,7 @@ def _model_class(reproduction, names):
              for name, values in best.items()]
     return _claim('Models K/((s+a)(s+b)) represent the responses to unit steps', 'sections 3, 7',
                   good, len(names) * len(OUTPUTS),
-                  f'Best NRMSE of any method, to be below {GOOD:g} %. {"; ".join(texts)}')
+                  f'Best NRMSE of any method, which must be below {GOOD:g} %: {"; ".join(texts)}')
 
 
 def _best_nrmse(study, output):
@@ -130,7 +130,7 @@ def _box():
               if name in SWARMS for value in model]
     return _claim(f'The search space [{BOX[0]:g}, {BOX[1]:g}] contains all solutions',
                   'section 4.4', sum(BOX[0] <= value <= BOX[1] for value in values), len(values),
-                  'Values of Table 2, of the methods that search, that lie in it', refutable=True)
+                  'Values of the search methods in Table 2 that lie within it', refutable=True)
 
 
 def _table_3(reproduction):
@@ -140,7 +140,7 @@ def _table_3(reproduction):
                   sum(cell.agrees for cell in cells), len(cells),
                   f'Cells within {100 * TOLERANCE:.0f} %, as plain sums without powers of ten, '
                   f'not as integrals, and with PSO and PSO-CS exchanged for '
-                  f'{" and ".join(EXCHANGED)}; as labelled {as_labelled}')
+                  f'{" and ".join(EXCHANGED)}; {as_labelled} as labelled')
 
 
 def _smallest_in_table_3():
@@ -151,8 +151,8 @@ def _smallest_in_table_3():
                           for cell in table_3(exchanged=())})
     total = len(OUTPUTS) * len(ERRORS)
     return _claim('All errors are smallest with PSO-CS', 'section 6, Table 3', computed, total,
-                  f'By the models that Table 2 calls PSO-CS; {printed} of {total} as Table 3 '
-                  'prints the errors', refutable=True)
+                  f'With the models that Table 2 calls PSO-CS; {printed} of {total} with the '
+                  'errors that Table 3 prints', refutable=True)
 
 
 def _smallest(table):
@@ -208,7 +208,7 @@ def _ls_formulas(reproduction):
     trips = reproduction.trips
     return _claim('Equations (36), (37) lead from K, a, b to a0, a1, b0, b1 and back', 'section 5',
                   sum(trip.printed_restores for trip in trips), len(trips),
-                  'Models of Table 2 that come back; with the formulas put right '
+                  'Models of Table 2 that are the same after both; with the formulas corrected '
                   f'{sum(trip.right_restores for trip in trips)} of {len(trips)}')
 
 

@@ -86,7 +86,7 @@ def _unit_steps():
 def _case(experiment, label, expected, source):
     run = experiment.runs[0]
     flight = fly(experiment, run)
-    # The equations derived right under the same inputs; a preset flies them for all 500 s.
+    # The equations derived correctly under the same inputs; a preset flies them for all 500 s.
     derived = replace(experiment, model='newton_euler', step=None,
                       runs=(replace(run, duration=min(run.duration, SHORT)),))
     return Case(label, experiment.vehicle.name, run.duration, expected, source, flight.status,

@@ -105,9 +105,9 @@ def _unit_steps_long(name):
     record = FlightRecord(full.t[::LONG_THINNED],
                           {name: values[::LONG_THINNED] for name, values in full.columns.items()},
                           full.info)
-    title = (f'{experiment.description.replace("5 s", f"{DURATION:.0f} s")}. Yaw is at its speed '
-             'within a sample: of its model only K/a and b are known, a is where a search may go '
-             'no further, and its ranking is one of bounds')
+    title = (f'{experiment.description.replace("5 s", f"{DURATION:.0f} s")}. Yaw reaches its '
+             'final speed within a sample: only K/a and b of its model are known, a ends at a '
+             'bound of the search, and the ranking of the methods for yaw compares only bounds')
     return Preset(name, title, (record,))
 
 

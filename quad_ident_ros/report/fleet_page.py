@@ -68,9 +68,9 @@ def _heat(found: Insight) -> list:
     """Return a table of vehicles by parameters, for each configuration."""
     parts = [tag('h2', 'Vehicles and effects'),
              tag('p', 'Each cell is the value at the last flight with its standard error. '
-                      f'Coloured cells are {FAR:g}, or {FARTHER:g} and more, times the spread '
-                      'between vehicles away from the other vehicles; a star marks those that '
-                      f'surely differ (probability over {SURE:g}).')]
+                      f'Coloured cells differ from the other vehicles by {FAR:g}, or '
+                      f'{FARTHER:g} and more, times the spread between vehicles; a star marks '
+                      f'those that surely differ (probability over {SURE:g}).')]
     for name in dict.fromkeys(one.configuration for one in found.sisters):
         some = sorted((one for one in found.sisters if one.configuration == name),
                       key=lambda one: (-len(one.vehicles), one.effect, one.parameter))

@@ -183,6 +183,17 @@ def test_coupling_with_the_other_axes_is_said():
     assert validity(pairs['phi']).holds is True
 
 
+@pytest.mark.parametrize(('turned', 'said'), [(2.0, ' % of the angular acceleration'),
+                                              (0.001, ' times the angular acceleration')])
+def test_a_coupling_beyond_measure_is_said_as_a_multiple(turned, said):
+    """It was a percentage of nine digits."""
+    t = np.arange(500) * 0.01
+    columns = {'phi': 0.5 * np.sin(6 * t), 'theta': 0.5 * np.cos(6 * t),
+               'psi': turned * np.sin(2 * t), 'u4': np.sin(2 * t), 'u2': np.sin(6 * t)}
+    pairs = {pair.output: pair for pair in signals(FlightRecord(t, columns, {}))[0]}
+    assert said in validity(pairs['psi']).why
+
+
 def test_without_an_attitude_the_tilt_is_not_known():
     flight = climb(0.0)
     bare = FlightRecord(flight.t, {name: flight.columns[name] for name in ('pz', 'u1')},

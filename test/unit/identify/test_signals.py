@@ -267,7 +267,7 @@ def test_a_gap_is_refused_with_its_place_and_length():
 def test_too_many_missing_samples_are_refused_with_their_count():
     keep = np.random.default_rng(0).random(501) > 0.3
     keep[[0, -1]] = True
-    with pytest.raises(InputError, match='of 501 samples are missing; at most 20% can be filled'):
+    with pytest.raises(InputError, match='of 501 samples are missing; at most 20 % can be filled'):
         signals(record((np.arange(501) * PERIOD)[keep]))
 
 

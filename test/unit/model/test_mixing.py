@@ -56,7 +56,7 @@ def test_unit_steps_need_the_squared_speeds_of_the_errata():
 def test_unit_steps_are_infeasible_and_the_message_says_which_rotor():
     message = reason(VEHICLE, [1.0, 1.0, 1.0, 1.0])
     assert 'rotor 2 would need a squared speed of -85728.9' in message
-    assert 'U = (1, 1, 1, 1) at t = 0 s' in message and 'possible are 0 to 1e+06' in message
+    assert 'U = (1, 1, 1, 1) at t = 0 s' in message and 'which must be 0 to 1e+06' in message
     # Without yaw too: w1^2 + w2^2 = -1/(2b).
     found = mixing.squared_speeds(VEHICLE, [[1.0, 1.0, 1.0, 0.0]])[0]
     assert found[0] + found[1] == pytest.approx(-1 / (2 * B))
@@ -103,9 +103,9 @@ def test_residual_rotor_speed_of_clipped_unit_steps_is_that_of_the_errata():
 
 def test_speed_limits_count():
     slow = replace(VEHICLE, speed_max=230.0)
-    assert 'possible are 0 to 52900' in reason(slow, HOVER)
+    assert 'which must be 0 to 52900' in reason(slow, HOVER)
     assert reason(replace(VEHICLE, speed_max=232.0), HOVER) is None
-    assert 'possible are 57600' in reason(replace(VEHICLE, speed_min=240.0), HOVER)
+    assert 'which must be 57600' in reason(replace(VEHICLE, speed_min=240.0), HOVER)
 
 
 def test_the_first_sample_that_cannot_be_is_named():

@@ -84,6 +84,16 @@ def test_a_wide_table_is_reached_and_scrolled_by_keys(browser, path):
         page.wait_for_function('document.activeElement.scrollLeft > 0')
 
 
+def test_prose_in_a_table_is_read_on_a_telephone_without_scrolling(browser, path):
+    """It was beyond the right edge, beside rows that it made high and empty."""
+    with opened(browser, path, 390) as (page, *_):
+        page.evaluate("""() => document.querySelectorAll('details')
+            .forEach(one => { one.open = true; })""")
+        assert page.evaluate("""() => [...document.querySelectorAll('td.prose')]
+            .filter(one => one.getBoundingClientRect().right > innerWidth)
+            .map(one => one.textContent)""") == []
+
+
 def test_the_effects_fit_a_desk_with_the_longest_title(browser, gap):
     """Their intervals were cut, and had to be scrolled to."""
     with opened(browser, gap) as (page, *_):
