@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What may be named as a cause, and which columns of the parameter vector that frees."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -114,7 +114,12 @@ def _share(name: str, form: Form, forms: Sequence[Form], rules: Rules) -> float:
     return shares[forms.index(form)]
 
 
-def nuisance_candidates(vehicle: Vehicle, tracks: list) -> tuple[Candidate, ...]:
-    """Return the Candidates for the nuisances of Tracks, which are not effects."""
-    return tuple(Candidate(kind.name, kind.name, kind.columns, nuisance=kind)
-                 for kind in nuisances(vehicle, tracks))
+def nuisance_candidates(vehicle: Vehicle, tracks: list, differ: Collection[str] = ()
+                        ) -> tuple[Candidate, ...]:
+    """
+    Return the Candidates for the nuisances of Tracks, which are not effects.
+
+    differ: names of those whose values sum to zero.
+    """
+    kinds = (replace(kind, sum_to_zero=kind.name in differ) for kind in nuisances(vehicle, tracks))
+    return tuple(Candidate(kind.name, kind.name, kind.columns, nuisance=kind) for kind in kinds)

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which effects explain flights: sets of candidates compared jointly, each refitted."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 
 import numpy as np
 from scipy.linalg import block_diag
@@ -58,10 +58,20 @@ def select(flights: list[Flight], vehicle: Vehicle, causes: tuple[Candidate, ...
 
     The errors are weighed by the noise from sample to sample. Where the residuals are much larger,
     by autocorrelated noise or by what no effect explains, their own size is the weight, until
-    the two agree.
+    the two agree. A moment that the best set has by flight although all flights have it alike is
+    the vehicle's: the search is repeated with moments that only differ.
     """
-    search = _Search(flights, vehicle, causes, rules)
+    search = _searched(_Search(flights, vehicle, causes, rules), on_progress)
+    alike = search.alike_in_nuisances()
+    if alike:
+        search = _searched(_Search(flights, vehicle, causes, rules, alike), lambda share: None)
+    return search.selection()
+
+
+def _searched(search: '_Search', on_progress: Callable[[float], None]) -> '_Search':
+    """Return a search that has come to its end."""
     # First the usual form of each effect, then all forms, around what the usual ones led to.
+    causes = search.all_causes
     usual = tuple(cause for cause in causes if cause.usual)
     for stage, group in enumerate((usual, causes)):
         for turn in range(1 + PASSES):
@@ -78,7 +88,7 @@ def select(flights: list[Flight], vehicle: Vehicle, causes: tuple[Candidate, ...
         search.look_among(causes, lambda share: None)
         search.settle()
     on_progress(1.0)
-    return search.selection()
+    return search
 
 
 class _Search:
@@ -93,9 +103,10 @@ class _Search:
     grids: tuple
 
     def __init__(self, flights: list[Flight], vehicle: Vehicle, causes: tuple[Candidate, ...],
-                 rules: Rules) -> None:
+                 rules: Rules, differ: Collection[str] = ()) -> None:
         self.flights, self.vehicle, self.rules = flights, vehicle, rules
-        self.all_causes, self.nuisances = causes, nuisance_candidates(vehicle, flights)
+        self.all_causes = causes
+        self.nuisances = nuisance_candidates(vehicle, flights, differ)
         starts = [flight.states[flight.first] for flight in flights]
         self.noise = [quick_noise(errors_along(flight, vehicle, nominal(vehicle), start))
                       for flight, start in zip(flights, starts, strict=True)]
@@ -353,6 +364,19 @@ class _Search:
                 whole = key_of((laws[0], *self.best.chosen))
                 self.fit(whole, start, fit.nuisances, fit.starts)
                 self.best = self.judge(whole)
+
+    def alike_in_nuisances(self) -> tuple[str, ...]:
+        """Return names of nuisances of the best set that its flights have alike: the vehicle's."""
+        assert self.best is not None
+        nuisances = self.best.estimate.nuisances
+        found = []
+        for cause in self.best.chosen:
+            if cause.nuisance is not None and cause.nuisance.of_vehicle:
+                places = [nuisances.columns.index(column) for column in cause.columns]
+                if are_alike(nuisances.values[:, places], nuisances.spreads[places],
+                             self.rules.prior_odds):
+                    found.append(cause.effect)
+        return tuple(found)
 
     def shows(self, chosen: tuple) -> bool:
         """Return whether each parameter of the forms with more than usual differs from none."""

@@ -31,7 +31,9 @@ RARE, LIKELY = 1e-4, 0.5    # odds of flights having one, before looking
 APART = 0.02        # s, how far clocks usually are apart where nothing shows it,
 REST = 0.001        # s, or
 REST_SHARE = 0.2    # periods, how far where they were put right
-MEAN_SHARE = 0.01   # of a spread, how far from zero the mean of what sums to zero may be
+# How far from zero the mean of what sums to zero may be, of a spread: half a hundredth of one
+# turns a vehicle of 30 g by a floor of Rules.
+MEAN_SHARE = 1e-4
 
 
 @dataclass(frozen=True)
@@ -41,9 +43,9 @@ class Nuisance:
 
     name, what it is, unit, places in z and its usual spread from 0 there, SI; odds of flights
     having it, before looking; of_effect: the name of the effect that differs by flight, or '';
-    sum_to_zero: of each place, whether the values of several flights do, because there is an
-    effect for what they share: it must not hide in them; shared: the name of the effect that it
-    is where flights have it alike, or ''.
+    of_vehicle: whether it is the vehicle's, though no one effect, where flights have it alike;
+    sum_to_zero: whether the values of several flights do, so that what they share cannot hide in
+    them; shared: the name of the effect that it is where flights have it alike, or ''.
     """
 
     name: str
@@ -53,8 +55,9 @@ class Nuisance:
     spreads: tuple[float, ...]
     odds: float
     of_effect: str = ''
-    sum_to_zero: tuple[bool, ...] = ()
     shared: str = ''
+    of_vehicle: bool = False
+    sum_to_zero: bool = False
 
 
 def put_right(tracks: Sequence[Track]) -> bool:
@@ -82,18 +85,20 @@ def nuisances(vehicle: Vehicle, tracks: Sequence[Track]) -> tuple[Nuisance, ...]
     if not inertial(tracks):
         # Unless clocks are known, an offset that all flights share is a delay of the actuators.
         alike = '' if put_right(tracks) else 'actuation_delay'
-        kinds.append((CLOCK, CLOCK_TITLE, 's', ('actuation_delay.delay',), (apart,), odds, '', (),
+        kinds.append((CLOCK, CLOCK_TITLE, 's', ('actuation_delay.delay',), (apart,), odds, '',
                       alike))
-        kinds += [('rate_bias', 'bias of the rate', 'rad/s', rate, (spread,) * 3, RARE, '', (),
+        kinds += [('rate_bias', 'bias of the rate', 'rad/s', rate, (spread,) * 3, RARE, '',
                    'gyro_bias') for spread in (0.01, 0.003)]
         kinds += [('attitude_bias', 'tilt of the attitude', 'rad', tilt, (spread,) * 3, RARE, '',
-                   (), 'attitude_misalignment') for spread in (0.005, 0.0015)]
+                   'attitude_misalignment') for spread in (0.005, 0.0015)]
         kinds.append(('heading', 'offset of the recorded heading from the axes of the position',
-                      'rad', ('attitude_misalignment.heading',), (HEADING,), RARE, '', (),
+                      'rad', ('attitude_misalignment.heading',), (HEADING,), RARE, '',
                       'attitude_misalignment'))
-        # A weak rotor or a centre of mass that is off tilts all flights alike; nothing turns them.
-        kinds.append((TRIM, 'moment', 'N m', moment, tuple(trim_wrench(vehicle)[3:]), RARE, '',
-                      (True, True, False)))
+        # What tilts or turns all flights alike is the vehicle's: a weak rotor, a centre of mass
+        # that is off, or something unknown. So is, for all that one flight shows, what tilts it.
+        if len(tracks) > 1:
+            kinds.append((TRIM, 'moment', 'N m', moment, tuple(trim_wrench(vehicle)[3:]), RARE,
+                          '', '', True))
     level = any(track.levelled for track in tracks)
     if level:
         kinds.append((LEVEL, LEVEL_TITLE, '1', ('thrust_scale.factor',), (OFF_LEVEL,), LIKELY))
@@ -108,7 +113,7 @@ def nuisances(vehicle: Vehicle, tracks: Sequence[Track]) -> tuple[Nuisance, ...]
         if differing:
             kinds.append((f'{name}_by_flight', f'{effect.title}, by flight', differing[0][0].unit,
                           tuple(f'{name}.{parameter.name}' for parameter, _ in differing),
-                          tuple(spread for _, spread in differing), RARE, name, (), name))
+                          tuple(spread for _, spread in differing), RARE, name, name))
     return tuple(Nuisance(name, title, unit, tuple(INDEX[one] for one in columns), *rest)
                  for name, title, unit, columns, *rest in kinds)
 
@@ -174,8 +179,7 @@ class NuisanceValues:
         """
         columns = tuple(column for kind in kinds for column in kind.columns)
         spreads = np.array([spread for kind in kinds for spread in kind.spreads], float)
-        zero = np.array([sums for kind in kinds for sums in
-                         kind.sum_to_zero or (False,) * len(kind.columns)], bool)
+        zero = np.array([kind.sum_to_zero for kind in kinds for _ in kind.columns], bool)
         values = np.zeros((count, len(columns)))
         for k, column in enumerate(columns):
             if known is not None and column not in columns[:k]:

@@ -17,9 +17,15 @@ from quad_ident_ros.experiment import fly, load_experiment
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import SENSORS
 from quad_ident_ros.greybox.flights import flight_of, track_of
-from quad_ident_ros.greybox.nuisances import are_alike, nuisances, NuisanceValues
+from quad_ident_ros.greybox.nuisances import (
+    are_alike,
+    Nuisance,
+    nuisances,
+    NuisanceValues,
+)
 from quad_ident_ros.model.attitude import product, rotation_matrix, turn
 from quad_ident_ros.model.dynamics import STATES
+from quad_ident_ros.model.residual_function import ResidualFunction
 from quad_ident_ros.model.vehicle import load_vehicle
 
 pytestmark = pytest.mark.slow
@@ -66,12 +72,17 @@ def changed(record, **columns):
 
 
 def trimmed(records, trims):
-    """Return records with rotors that give more at one side, less at the other: a moment."""
+    """
+    Return records with rotors that give more at one side, less at the other: a moment.
+
+    Args: trims: about x, y and, or none, z, for each record.
+    """
     hover = VEHICLE.mass * VEHICLE.gravity / VEHICLE.thrust_coefficient / len(VEHICLE.rotors)
     places = np.array([rotor.position for rotor in VEHICLE.rotors]) / VEHICLE.arm_length
+    spins = np.array([rotor.spin for rotor in VEHICLE.rotors])
     flights = []
-    for record, (roll, pitch) in zip(records, trims, strict=True):
-        more = hover * (roll * places[:, 1] - pitch * places[:, 0])
+    for record, (roll, pitch, *yaw) in zip(records, trims, strict=True):
+        more = hover * (roll * places[:, 1] - pitch * places[:, 0] + sum(yaw) * spins)
         flights.append(changed(record, **{
             name: np.sqrt(np.maximum(record.columns[name] ** 2 + more[j], 0.0))
             for j, name in enumerate(f'cmd{j}' for j in range(1, 1 + len(more)))}))
@@ -159,6 +170,27 @@ def test_what_tilts_all_flights_alike_is_not_hidden_in_their_trims(dragged):
     assert set(data['verdict']) == {'rotor_drag', 'com_offset'}
 
 
+@pytest.mark.parametrize('count', [1, 4])
+def test_what_turns_all_flights_alike_is_unknown(dragged, count):
+    """No effect is a moment about z alone: a simulation without it turns away all the same."""
+    data = diagnose(trimmed(dragged[:count], count * ((0.0, 0.0, 0.1),)), VEHICLE).as_data()
+    assert data['verdict'] == ['rotor_drag', 'unknown']
+    assert data['unknown'][0]['channel'] == 'Mz'
+    assert not (data['nuisances'] or {}).get('trim_moment')
+
+
+def test_a_small_moment_that_all_flights_share_is_not_hidden_either():
+    """It is a fortieth of what trims of 30 g usually are, but turns them by 0.5 rad/s^2."""
+    vehicle = load_vehicle('crazyflie')
+    wrench = (0.0, 0.0, 0.0, 7e-6, -7e-6, -4e-6)
+    real = replace(vehicle, residual=ResidualFunction(tuple(map(abs, wrench)), wrench, (), ()))
+    flights = [fly_closed_loop(real, {}, 'lissajous', duration=12.0, seed=seed,
+                               noise=SENSORS['mocap_imu']) for seed in range(3)]
+    data = diagnose(flights, vehicle).as_data()
+    assert data['verdict'] != ['none']
+    assert not (data['nuisances'] or {}).get('trim_moment')
+
+
 @pytest.mark.parametrize(('alike', 'values'), [
     (True, [[2.58, 1.69], [2.51, 1.63], [2.46, 1.59]]),
     (False, [[0.5, -0.4], [0.9, 0.3], [-0.2, 0.6]]),
@@ -197,14 +229,15 @@ def test_a_wind_that_all_flights_have_nearly_alike_is_one():
 
 
 def test_what_sums_to_zero_is_as_likely_as_independent_values_that_do():
-    [kind] = [one for one in nuisances(VEHICLE, []) if one.name == 'trim_moment']
+    kind = Nuisance('trim', 'moment', 'N m', (0, 1, 2), (0.02, 0.02, 0.005), 1e-4,
+                    sum_to_zero=True)
     random = np.random.default_rng(4)
     values = random.normal(size=(5, 3)) * kind.spreads
-    centred = values - values.mean(axis=0) * kind.sum_to_zero
+    centred = values - values.mean(axis=0)
     cost = [np.ravel(one) @ NuisanceValues.of([kind], 5).precision @ np.ravel(one)
             for one in (centred, values)]
     assert cost[0] == pytest.approx(np.sum((centred / kind.spreads) ** 2), rel=1e-9)
-    assert cost[1] > 100.0 * cost[0]    # a hundredth of a spread is how far their mean may be
+    assert cost[1] > 100.0 * cost[0]
     alone = NuisanceValues.of([kind], 1).precision
     assert alone == pytest.approx(np.diag(np.array(kind.spreads) ** -2.0))
 
@@ -419,10 +452,10 @@ def test_a_negative_delay_undoes_a_positive_one(name):
     np.testing.assert_allclose(back[96:], np.tile(commands[96], (4, 1)), rtol=1e-9)
 
 
-def test_thrust_and_wind_by_flight_are_asked_of_several_flights_alone(dragged):
+def test_thrust_wind_and_moment_by_flight_are_asked_of_several_flights_alone(dragged):
     tracks = [track_of(record, VEHICLE) for record in dragged]
     names = [{kind.name for kind in nuisances(VEHICLE, tracks[:count])} for count in (1, 2)]
-    assert names[1] - names[0] == {'thrust_scale_by_flight', 'wind_by_flight'}
+    assert names[1] - names[0] == {'thrust_scale_by_flight', 'trim_moment', 'wind_by_flight'}
 
 
 def test_a_battery_that_was_fuller_in_one_flight_is_no_effect():
