@@ -3,7 +3,7 @@
 """What may be named as a cause, and which columns of the parameter vector that frees."""
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -119,7 +119,8 @@ def nuisance_candidates(vehicle: Vehicle, tracks: list, differ: Collection[str] 
     """
     Return the Candidates for the nuisances of Tracks, which are not effects.
 
-    differ: names of those whose values sum to zero.
+    differ: names of those by which flights only differ.
     """
-    kinds = (replace(kind, sum_to_zero=kind.name in differ) for kind in nuisances(vehicle, tracks))
+    kinds = (kind.differing if kind.name in differ else kind
+             for kind in nuisances(vehicle, tracks))
     return tuple(Candidate(kind.name, kind.name, kind.columns, nuisance=kind) for kind in kinds)

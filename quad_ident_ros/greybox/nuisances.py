@@ -10,7 +10,7 @@ parameters of each one, about zero and about as wide as its usual spread.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.stats import f as fisher
@@ -31,9 +31,10 @@ RARE, LIKELY = 1e-4, 0.5    # odds of flights having one, before looking
 APART = 0.02        # s, how far clocks usually are apart where nothing shows it,
 REST = 0.001        # s, or
 REST_SHARE = 0.2    # periods, how far where they were put right
-# How far from zero the mean of what sums to zero may be, of a spread: half a hundredth of one
-# turns a vehicle of 30 g by a floor of Rules.
-MEAN_SHARE = 1e-4
+# Of a spread, how far from zero the mean over the flights may be: where an effect acts nearly
+# alike; where flights have it alike, for half a hundredth turns a vehicle of 30 g by a floor of
+# Rules.
+NEARLY_ZERO, ZERO = 0.01, 1e-4
 
 
 @dataclass(frozen=True)
@@ -44,8 +45,9 @@ class Nuisance:
     name, what it is, unit, places in z and its usual spread from 0 there, SI; odds of flights
     having it, before looking; of_effect: the name of the effect that differs by flight, or '';
     of_vehicle: whether it is the vehicle's, though no one effect, where flights have it alike;
-    sum_to_zero: whether the values of several flights do, so that what they share cannot hide in
-    them; shared: the name of the effect that it is where flights have it alike, or ''.
+    mean_shares: of each place, how far from zero the mean over several flights may be, of a
+    spread, so that what they share cannot hide in it; none where it is free; shared: the name of
+    the effect that it is where flights have it alike, or ''.
     """
 
     name: str
@@ -57,7 +59,12 @@ class Nuisance:
     of_effect: str = ''
     shared: str = ''
     of_vehicle: bool = False
-    sum_to_zero: bool = False
+    mean_shares: tuple[float, ...] = ()
+
+    @property
+    def differing(self) -> Nuisance:
+        """Return the same by which flights only differ: all its values sum to zero."""
+        return replace(self, mean_shares=(ZERO,) * len(self.columns))
 
 
 def put_right(tracks: Sequence[Track]) -> bool:
@@ -98,7 +105,7 @@ def nuisances(vehicle: Vehicle, tracks: Sequence[Track]) -> tuple[Nuisance, ...]
         # that is off, or something unknown. So is, for all that one flight shows, what tilts it.
         if len(tracks) > 1:
             kinds.append((TRIM, 'moment', 'N m', moment, tuple(trim_wrench(vehicle)[3:]), RARE,
-                          '', '', True))
+                          '', '', True, (NEARLY_ZERO, NEARLY_ZERO, np.inf)))
     level = any(track.levelled for track in tracks)
     if level:
         kinds.append((LEVEL, LEVEL_TITLE, '1', ('thrust_scale.factor',), (OFF_LEVEL,), LIKELY))
@@ -159,14 +166,14 @@ class NuisanceValues:
     """
     Places in z (K,) of the nuisances of flights, their spreads (K,) and values (F, K).
 
-    sum_to_zero (K,): whether those of several flights do;
+    mean_shares (K,): as of Nuisance, inf where free;
     fixed (F, Z): what is added to the vector of each flight and is not estimated, or None.
     """
 
     columns: tuple[int, ...]
     spreads: np.ndarray
     values: np.ndarray
-    sum_to_zero: np.ndarray
+    mean_shares: np.ndarray
     fixed: np.ndarray | None = None
 
     @classmethod
@@ -179,13 +186,14 @@ class NuisanceValues:
         """
         columns = tuple(column for kind in kinds for column in kind.columns)
         spreads = np.array([spread for kind in kinds for spread in kind.spreads], float)
-        zero = np.array([kind.sum_to_zero for kind in kinds for _ in kind.columns], bool)
+        shares = np.array([share for kind in kinds for share in
+                           kind.mean_shares or (np.inf,) * len(kind.columns)], float)
         values = np.zeros((count, len(columns)))
         for k, column in enumerate(columns):
             if known is not None and column not in columns[:k]:
                 same = np.array(known.columns, int) == column
                 values[:, k] = known.values[:, same].sum(axis=1)
-        return cls(columns, spreads, values, zero)
+        return cls(columns, spreads, values, shares)
 
     @property
     def precision(self) -> np.ndarray:
@@ -196,10 +204,9 @@ class NuisanceValues:
         is nearly none (Gelman and Hill, Data Analysis Using Regression, 2007, section 19.4).
         """
         count = len(self.values)
-        mean = np.zeros((count, count)) if count == 1 else np.full(
-            (count, count), 1.0 / (count * MEAN_SHARE ** 2))
-        shares = np.diag(self.spreads ** -2.0)
-        return np.kron(np.eye(count), shares) + np.kron(mean, shares * self.sum_to_zero)
+        mean = np.full((count, count), 1.0 / count if count > 1 else 0.0)
+        return (np.kron(np.eye(count), np.diag(self.spreads ** -2.0))
+                + np.kron(mean, np.diag((self.spreads * self.mean_shares) ** -2.0)))
 
     def vectors(self, z: np.ndarray) -> list[np.ndarray]:
         """Return z (Z,) with the nuisances of each flight, a list of (Z,)."""
