@@ -29,6 +29,10 @@ def check_outputs(options):
     for given in _named(options, FILES_READ):
         if Path(given).is_dir():
             raise InputError(f'{given}: this is a folder; name a file')
+    for output in _named(options, ('report',)):
+        if Path(output).suffix.lower() not in PAGES:
+            raise InputError(f'{output}: a report is a page for a browser; name a file that ends '
+                             'in .html, and print it to a PDF from there')
     inputs, written = _named(options, INPUTS), set()
     for output in _named(options, OUTPUTS):
         refuse_overwriting(output, inputs)
@@ -46,10 +50,6 @@ def check_outputs(options):
     for output in _named(options, FILES):
         if Path(output).is_dir():
             raise InputError(f'{output}: this is a folder; name a file')
-    for output in _named(options, ('report',)):
-        if Path(output).suffix.lower() not in PAGES:
-            raise InputError(f'{output}: a report is a page for a browser; name a file that ends '
-                             'in .html, and print it to a PDF from there')
     for output in _named(options, ('out_vehicle',)):
         check_ending(output)
 
@@ -59,9 +59,13 @@ def refuse_overwriting(output, inputs):
     whole = Path(output).resolve()
     places = [place for place in (whole, *whole.parents) if place.exists()]
     for given in map(Path, inputs):
-        if given.exists() and any(place.samefile(given) for place in places):
+        if not given.exists() or not any(place.samefile(given) for place in places):
+            continue
+        if whole.exists() and whole.samefile(given):
             raise InputError(f'{output}: this would write over {given}, which is read; give '
                              'another name')
+        raise InputError(f'{output}: this would be written into {given}, a folder that is read; '
+                         'name one outside of it')
 
 
 def _try_to_write(output, place):

@@ -126,6 +126,12 @@ OVERWRITING = {
 }
 
 
+def test_a_report_that_is_no_page_is_refused_before_where_it_would_go(tmp_path, capsys):
+    assert main(['fleet', str(tmp_path), '--out', str(tmp_path / 'fleet'),
+                 '--report', str(tmp_path / 'x.pdf')]) == 2
+    assert 'a report is a page for a browser' in capsys.readouterr().err
+
+
 @pytest.mark.parametrize('call', OVERWRITING.values(), ids=OVERWRITING)
 def test_no_command_writes_over_what_it_reads(call, flights, tmp_path, capsys):
     flight, vehicle = tmp_path / 'flight.csv', tmp_path / 'vehicle.yaml'
@@ -136,7 +142,9 @@ def test_no_command_writes_over_what_it_reads(call, flights, tmp_path, capsys):
     words = [word.replace('FLIGHT', str(flight)).replace('VEHICLE', str(vehicle))
              .replace('FOLDER', str(tmp_path)) for word in call.split()]
     assert main(words) == 2
-    assert 'which is read; give another name' in capsys.readouterr().err
+    into = call == OVERWRITING['convert, into the bag']
+    assert ('a folder that is read; name one outside of it' if into
+            else 'which is read; give another name') in capsys.readouterr().err
     assert before == {path: path.read_bytes() for path in (flight, vehicle)}
     assert list((tmp_path / 'sub').iterdir()) == []
 
