@@ -29,10 +29,6 @@ def check_outputs(options):
     for given in _named(options, FILES_READ):
         if Path(given).is_dir():
             raise InputError(f'{given}: this is a folder; name a file')
-    for output in _named(options, ('report',)):
-        if Path(output).suffix.lower() not in PAGES:
-            raise InputError(f'{output}: a report is a page for a browser; name a file that ends '
-                             'in .html, and print it to a PDF from there')
     inputs, written = _named(options, INPUTS), set()
     for output in _named(options, OUTPUTS):
         refuse_overwriting(output, inputs)
@@ -50,6 +46,10 @@ def check_outputs(options):
     for output in _named(options, FILES):
         if Path(output).is_dir():
             raise InputError(f'{output}: this is a folder; name a file')
+    for output in _named(options, ('report',)):
+        if Path(output).suffix.lower() not in PAGES:
+            raise InputError(f'{output}: a report is a page for a browser; name a file that ends '
+                             'in .html, and print it to a PDF from there')
     for output in _named(options, ('out_vehicle',)):
         check_ending(output)
 

@@ -126,12 +126,6 @@ OVERWRITING = {
 }
 
 
-def test_a_report_that_is_no_page_is_refused_before_where_it_would_go(tmp_path, capsys):
-    assert main(['fleet', str(tmp_path), '--out', str(tmp_path / 'fleet'),
-                 '--report', str(tmp_path / 'x.pdf')]) == 2
-    assert 'a report is a page for a browser' in capsys.readouterr().err
-
-
 @pytest.mark.parametrize('call', OVERWRITING.values(), ids=OVERWRITING)
 def test_no_command_writes_over_what_it_reads(call, flights, tmp_path, capsys):
     flight, vehicle = tmp_path / 'flight.csv', tmp_path / 'vehicle.yaml'
