@@ -102,10 +102,9 @@ def nuisances(vehicle: Vehicle, tracks: Sequence[Track]) -> tuple[Nuisance, ...]
                       'rad', ('attitude_misalignment.heading',), (HEADING,), RARE, '',
                       'attitude_misalignment'))
         # What tilts or turns all flights alike is the vehicle's: a weak rotor, a centre of mass
-        # that is off, or something unknown. So is, for all that one flight shows, what tilts it.
-        if len(tracks) > 1:
-            kinds.append((TRIM, 'moment', 'N m', moment, tuple(trim_wrench(vehicle)[3:]), RARE,
-                          '', '', True, (NEARLY_ZERO, NEARLY_ZERO, np.inf)))
+        # that is off, or something unknown.
+        kinds.append((TRIM, 'moment', 'N m', moment, tuple(trim_wrench(vehicle)[3:]), RARE, '', '',
+                      True, (NEARLY_ZERO, NEARLY_ZERO, np.inf)))
     level = any(track.levelled for track in tracks)
     if level:
         kinds.append((LEVEL, LEVEL_TITLE, '1', ('thrust_scale.factor',), (OFF_LEVEL,), LIKELY))
