@@ -173,7 +173,7 @@ class Bench:
         # Thrust, wind and moment of a flight do what many effects do: they stay as they are.
         held = {cause for cause in model.chosen
                 if cause.nuisance is not None and cause not in own and (
-                    cause.nuisance.of_effect or cause.nuisance.of_vehicle
+                    cause.nuisance.of_effect or cause.nuisance.mean_shares
                     or {*cause.nuisance.columns} & {*shared, *kept})}
         free = [column for cause in model.chosen
                 if cause.nuisance is not None and cause not in held

@@ -48,6 +48,7 @@ from quad_ident_ros.model.vehicle import Vehicle
 ROUNDS = 6
 KEPT = 10           # fitted sets that are judged again around each new best one
 PASSES = 3          # times, at most, in each stage, that the noise is estimated again
+ONCE = 0.8          # of the progress, which a search has that is hardly ever repeated
 LOST = 4.0          # times the scatter that a fit may cost more than a subset does
 
 
@@ -61,10 +62,13 @@ def select(flights: list[Flight], vehicle: Vehicle, causes: tuple[Candidate, ...
     the two agree. A moment that the best set has by flight although all flights have it alike is
     the vehicle's: the search is repeated with moments that only differ.
     """
-    search = _searched(_Search(flights, vehicle, causes, rules), on_progress)
+    search = _searched(_Search(flights, vehicle, causes, rules),
+                       lambda share: on_progress(ONCE * share))
     alike = search.alike_in_nuisances()
     if alike:
-        search = _searched(_Search(flights, vehicle, causes, rules, alike), lambda share: None)
+        search = _searched(_Search(flights, vehicle, causes, rules, alike),
+                           lambda share: on_progress(ONCE + (1.0 - ONCE) * share))
+    on_progress(1.0)
     return search.selection()
 
 
@@ -371,7 +375,7 @@ class _Search:
         nuisances = self.best.estimate.nuisances
         found = []
         for cause in self.best.chosen:
-            if cause.nuisance is not None and cause.nuisance.of_vehicle:
+            if cause.nuisance is not None and cause.nuisance.mean_shares:
                 places = [nuisances.columns.index(column) for column in cause.columns]
                 if are_alike(nuisances.values[:, places], nuisances.spreads[places],
                              self.rules.prior_odds):

@@ -44,10 +44,9 @@ class Nuisance:
 
     name, what it is, unit, places in z and its usual spread from 0 there, SI; odds of flights
     having it, before looking; of_effect: the name of the effect that differs by flight, or '';
-    of_vehicle: whether it is the vehicle's, though no one effect, where flights have it alike;
-    mean_shares: of each place, how far from zero the mean over several flights may be, of a
-    spread, so that what they share cannot hide in it; none where it is free; shared: the name of
-    the effect that it is where flights have it alike, or ''.
+    shared: the name of the effect that it is where flights have it alike, or ''; mean_shares,
+    where it is the vehicle's then, though no one effect: of each place, how far from zero the
+    mean over several flights may be, of a spread, and inf where it is free.
     """
 
     name: str
@@ -58,7 +57,6 @@ class Nuisance:
     odds: float
     of_effect: str = ''
     shared: str = ''
-    of_vehicle: bool = False
     mean_shares: tuple[float, ...] = ()
 
     @property
@@ -104,7 +102,7 @@ def nuisances(vehicle: Vehicle, tracks: Sequence[Track]) -> tuple[Nuisance, ...]
         # What tilts or turns all flights alike is the vehicle's: a weak rotor, a centre of mass
         # that is off, or something unknown.
         kinds.append((TRIM, 'moment', 'N m', moment, tuple(trim_wrench(vehicle)[3:]), RARE, '', '',
-                      True, (NEARLY_ZERO, NEARLY_ZERO, np.inf)))
+                      (NEARLY_ZERO, NEARLY_ZERO, np.inf)))
     level = any(track.levelled for track in tracks)
     if level:
         kinds.append((LEVEL, LEVEL_TITLE, '1', ('thrust_scale.factor',), (OFF_LEVEL,), LIKELY))

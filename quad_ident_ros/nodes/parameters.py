@@ -47,6 +47,8 @@ class ParameterSpec:
         said = self.description
         if self.choices:
             said += f' One of: {", ".join(self.choices)}.'
+        if self.limits and isinstance(self.default, list):      # ranges of ROS are of one number
+            said += f' Each from {self.limits[0]:g} to {self.limits[1]:g}.'
         descriptor = ParameterDescriptor(name=self.name, type=TYPES[type(self.default)],
                                          description=said, read_only=self.fixed)
         if self.limits and isinstance(self.default, int):

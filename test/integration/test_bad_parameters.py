@@ -210,9 +210,8 @@ def test_parameters_are_described(graph, node):
         assert descriptor.description.startswith(spec.description)
         assert descriptor.type == spec.descriptor().type
         assert descriptor.read_only == spec.fixed
-        # Ranges of ROS are those of single numbers.
-        assert bool(descriptor.integer_range or descriptor.floating_point_range) \
-            == bool(spec.limits and isinstance(spec.default, (int, float)))
+        assert bool(descriptor.integer_range or descriptor.floating_point_range
+                    or ' Each from ' in descriptor.description) == bool(spec.limits)
 
 
 def test_noise_that_a_closed_loop_does_not_know_is_refused(graph):
