@@ -254,6 +254,28 @@ class Branches(Influence):
         return force, np.cross(self.away * self.sides[last], force)
 
 
+class Leash(Force):
+    """
+    A line of safety, which is slack near its pole and pulls beyond its length.
+
+    As vehicles are tied up in tests in practice; it pulls as a spring does, and never pushes.
+    """
+
+    LENGTHS, HIGH = (0.6, 0.9), 1.0         # m; m, of its end on the pole
+
+    def __init__(self, size, weight, rng):
+        """Draw where the pole is, and how long the line is."""
+        self.end = np.array([*rng.uniform(-0.4, 0.4, 2), self.HIGH])
+        self.length, self.stiffness = rng.uniform(*self.LENGTHS), 0.08 * size * weight
+
+    def force(self, time, position, velocity):
+        """Return the force."""
+        away = self.end - position
+        far = float(np.linalg.norm(away))
+        taut = max(far - self.length, 0.0)
+        return self.stiffness * taut * away / max(far, 1e-9)
+
+
 # Each with what of the vehicle its size is measured by.
 KINDS = {'periodic_force': (Periodic, 'weight'), 'tether': (Tether, 'weight'),
          'updraft': (Updraft, 'weight'), 'thrust_exponent': (Exponent, 'hover'),
@@ -261,4 +283,4 @@ KINDS = {'periodic_force': (Periodic, 'weight'), 'tether': (Tether, 'weight'),
          'ceiling': (Ceiling, 'radius'), 'neighbours': (Neighbours, 'hover'),
          'wall': (Wall, 'radius', 'weight'), 'whirl': (Whirl, 'weight'),
          'stutter': (Stutter, 'rotors'), 'compass': (Compass,),
-         'branches': (Branches, 'weight', 'radius')}
+         'branches': (Branches, 'weight', 'radius'), 'leash': (Leash, 'weight')}

@@ -197,3 +197,12 @@ def test_branches_push_aside_off_the_centre_now_and_then():
     assert 0.05 < np.mean(sizes > 0.0) < 0.3 and not np.any(forces[:, 2])
     assert sizes.max() == pytest.approx(branches.push, rel=0.02)
     assert 0.0 < np.abs(moments).max() <= branches.away * branches.push
+
+
+def test_a_leash_pulls_beyond_its_length_alone():
+    leash = outside.Leash(1.0, 5.0, np.random.default_rng(1))
+    place = np.array([0.0, 0.0, leash.length])
+    assert not np.any(leash.force(0.0, leash.end - 0.99 * place, None))
+    pulls = [leash.force(0.0, leash.end - share * place, None) for share in (1.5, 2.0)]
+    assert pulls[1] == pytest.approx(leash.stiffness * place)
+    assert pulls[0] == pytest.approx(0.5 * pulls[1])
