@@ -55,7 +55,8 @@ def table(head: Sequence[object], rows: Iterable[Sequence[object]], kinds: Itera
     kinds = tuple(kinds) or ('text',) + ('',) * (len(head) - 1)
     titles = join((_title(title, 'col', kind and 'text') if title else tag('td', '')
                    for title, kind in zip(head, kinds, strict=True)), '')
-    lines, group = [], ''
+    lines = []
+    group: object = ''
     for row in rows:
         begins = row[0] != ''
         group = row[0] if begins else group
