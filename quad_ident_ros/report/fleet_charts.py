@@ -48,19 +48,20 @@ def small_multiple(one: History, unit: str, factor: float) -> Markup:
         parts.append(_line('change', f'M{at:.1f} {TOP}V{HIGH - FOOT}'))
     # As many digits as tell the two apart: thrust of 1.0195 from one of 1.0205.
     digits = max(3, 2 + math.ceil(math.log10(max(abs(low), abs(high)) / (high - low))))
-    parts += [_text(LEFT - 4, y(high) + 8, 'end', f'{factor * high:.{digits}g}'),
-              _text(LEFT - 4, y(low), 'end', f'{factor * low:.{digits}g}'),
-              _text(LEFT, HIGH - 4, 'start', _day(series.t[0])),
-              _text(WIDE - RIGHT, HIGH - 4, 'end', _day(series.t[-1]))]
+    marks = [_text(LEFT - 4, y(high) + 8, 'end', f'{factor * high:.{digits}g}'),
+             _text(LEFT - 4, y(low), 'end', f'{factor * low:.{digits}g}'),
+             _text(LEFT, HIGH - 4, 'start', _day(series.t[0])),
+             _text(WIDE - RIGHT, HIGH - 4, 'end', _day(series.t[-1]))]
     return Markup(f'<svg class="small" viewBox="0 0 {WIDE:g} {HIGH:g}" role="img" aria-label="'
-                  f'{escape(in_words(one, unit, factor))}">{"".join(parts)}</svg>')
+                  f'{escape(in_words(one, unit, factor))}"><g aria-hidden="true">'
+                  f'{"".join(parts + marks)}</g></svg>')
 
 
 def in_words(one: History, unit: str, factor: float) -> str:
     """Return what a picture shows, for who does not see it."""
-    series = one.series
+    series, in_unit = one.series, f' in {unit}' if unit not in ('1', '') else ''
     told = [f'{with_configuration(series.vehicle, series.configuration)}, '
-            f'{titled(series.effect)} {series.parameter} in {unit} over '
+            f'{titled(series.effect)} {series.parameter}{in_unit} over '
             f'{counted(len(series.values), "flight")}: '
             f'{with_error(factor * one.level, factor * one.std)} at the last']
     told += [f'it changes before flight {change.place + 1} by {factor * change.size:.3g}'

@@ -29,7 +29,7 @@ from quad_ident_ros.report.fleet_words import (
     with_configuration,
     WORSE,
 )
-from quad_ident_ros.report.html import details, join, Markup, markup, table, tag, write_page
+from quad_ident_ros.report.html import details, heard, join, Markup, markup, table, tag, write_page
 from quad_ident_ros.report.sizes import handy, sized, with_error
 
 MOST = 600          # small pictures: a page with more takes seconds to open
@@ -52,7 +52,8 @@ def _first(found: Insight) -> list:
         return [head, tag('p', f'{nothing_line(found)}.')]
     items = join(Markup(
         f'<li data-vehicle="{escape(one.where)}">' + join(
-            [tag('strong', one.where), tag('span', one.why, f'tag {_kind(one)}'), one.text], ' ')
+            [tag('strong', one.where),
+             join([tag('span', one.why, f'tag {_kind(one)}'), ':'], ''), one.text], ' ')
         + '</li>') for one in some)
     return [head, tag('p', 'The most urgent first: what gets worse, what changed, which vehicles '
                            'differ from their sisters, what the model does not have, and logs '
@@ -100,10 +101,12 @@ def _cell(one: Sister, factor: float, has_sisters: bool) -> Markup:
     kind = 'no' if away >= FARTHER else 'part' if away >= FAR else ''
     star = ' *' if one.odd >= SURE else ''
     attribute = f' class="{kind}"' if kind else ''
+    away_by = f'{one.spreads:+.1f} spreads from its sisters'
     if has_sisters:
-        attribute += f' title="{one.spreads:+.1f} spreads from its sisters"'
+        attribute += f' title="{away_by}"'
     return Markup(f'<td{attribute} data-value="{one.value:.6g}">'
-                  f'{with_error(factor * one.value, factor * one.std)}{star}</td>')
+                  f'{with_error(factor * one.value, factor * one.std)}{star}'
+                  f'{heard(f", {away_by}") if kind else ""}</td>')
 
 
 def _effects(found: Insight) -> list:

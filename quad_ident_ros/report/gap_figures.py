@@ -9,7 +9,12 @@ from quad_ident_ros.diagnose.result import Diagnosis
 from quad_ident_ros.report.chart import save_chart
 from quad_ident_ros.report.flight_path import flight_path, save_path
 from quad_ident_ros.report.gap_charts import predictions, spectrum
-from quad_ident_ros.report.gap_pictures import save_horizons, save_map
+from quad_ident_ros.report.gap_pictures import (
+    horizons_in_words,
+    map_in_words,
+    save_horizons,
+    save_map,
+)
 from quad_ident_ros.report.svg import Figure
 
 
@@ -33,14 +38,17 @@ def figures(found: Diagnosis) -> dict[str, Figure]:
             'by inertia, each without its mean; the noise is part of it.', density.as_data()),
         'horizons': Figure(
             lambda file: save_horizons(found.gap, file),
-            'Gap by horizon, before and after, and of noise alone',
+            'Gap by horizon, before and after, and of noise alone. '
+            f'{horizons_in_words(found.gap)}',
             'Root mean square error of the predictions over the horizon, with 95 % intervals '
             '(bootstrap of blocks of time).'),
         'map': Figure(
             lambda file: save_map(pictures.wrench_before, pictures.wrench_after, found.vehicle,
                                   file),
-            'Residual force and moment by channel and regime, before and after; the tables under '
-            '"The map in numbers" have every cell',
+            'Residual force and moment by channel and regime. Largest before: '
+            f'{map_in_words(pictures.wrench_before, found.vehicle)}; after: '
+            f'{map_in_words(pictures.wrench_after, found.vehicle)}. The tables under "The map in '
+            'numbers" have every cell.',
             'Force and moment that the model does not explain, by channel and regime: each '
             'feature is split into thirds of the flight time. The colour is the velocity that '
             'they cause in half a second, without the noise, on one scale for both.')}

@@ -134,9 +134,9 @@ def _which(found: Diagnosis) -> list:
 
 
 def _probabilities(found: Diagnosis) -> Markup:
-    return table(['effect', 'probability', ''], [
-        [titled(row.effect), f'{row.probability:.2f}', bar(row.probability)]
-        for row in found.ranking], ('text', '', 'text'),
+    return table(['effect', 'probability'], [
+        [titled(row.effect), join([f'{row.probability:.2f}', bar(row.probability)], ' ')]
+        for row in found.ranking], ('text', 'text'),
         caption='Probability of each effect of being present')
 
 

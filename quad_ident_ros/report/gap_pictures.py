@@ -59,6 +59,15 @@ def save_horizons(gap: Gap, path: str | Path) -> None:
     save(plt, figure, path)
 
 
+def horizons_in_words(gap: Gap) -> str:
+    """Return the gap at the longest horizon, for who does not see the picture of all."""
+    horizon, last = max(gap.horizons.items(), key=lambda one: float(one[0]))
+    return f'At {float(horizon):g} s: ' + '; '.join(
+        f'{group} {last["before"][group]:.3g} {gap.units[group]} before, '
+        f'{last["after"][group]:.3g} after, {last["noise"][group]:.3g} of noise'
+        for group in GROUPS) + '.'
+
+
 def save_map(before: tuple[ResidualWrench, ...], after: tuple[ResidualWrench, ...],
              vehicle: Vehicle, path: str | Path) -> None:
     """
@@ -109,6 +118,15 @@ def map_rows(flights: tuple[ResidualWrench, ...], names: list[str],
     columns = _by_third(flights, names, vehicle).T
     return [[f'{name}, {third}', *(f'{value:.3g}' for value in column)]
             for (name, third), column in zip(product(names, THIRDS), columns, strict=True)]
+
+
+def map_in_words(flights: tuple[ResidualWrench, ...], vehicle: Vehicle) -> str:
+    """Return the largest number of a map and its place, for who does not see its colours."""
+    names = regimes(flights)
+    cells = _by_third(flights, names, vehicle)
+    channel, column = np.unravel_index(np.nanargmax(cells), cells.shape)
+    name, third = list(product(names, THIRDS))[column]
+    return f'{cells[channel, column]:.3g} m/s by {CHANNELS[channel]} ({name}, {third})'
 
 
 def _by_third(flights: tuple[ResidualWrench, ...], names: list[str],

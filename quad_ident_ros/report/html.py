@@ -31,6 +31,11 @@ def tag(name: str, content: object, kind: str = '') -> Markup:
     return Markup(f'<{name}{attribute}>{markup(content)}</{name}>')
 
 
+def heard(content: object) -> Markup:
+    """Return content for who hears the page; it is not seen."""
+    return tag('span', content, 'heard')
+
+
 def join(parts: Iterable[object], between: str = '\n') -> Markup:
     """Return parts as HTML, one after another."""
     return Markup(between.join(markup(part) for part in parts))
@@ -43,15 +48,22 @@ def table(head: Sequence[object], rows: Iterable[Sequence[object]], kinds: Itera
 
     Args: head: titles of the columns; rows: lists of cells, each text or Markup, or a td element
     of its own; kinds: class of each column, by default 'text' for the first and numbers after it.
-    A row whose first cell is not empty begins a group, and that cell is the title of its row. A
-    table of many columns is set smaller.
+    A row whose first cell is not empty begins a group, and that cell is the title of its row; it
+    is that of the others of the group, too, for who hears the table. A table of many columns is
+    set smaller.
     """
     kinds = tuple(kinds) or ('text',) + ('',) * (len(head) - 1)
     titles = join((_title(title, 'col', kind and 'text') if title else tag('td', '')
                    for title, kind in zip(head, kinds, strict=True)), '')
-    lines = [tag('tr', join((_cell(cell, kind, place) for place, (cell, kind) in
-                             enumerate(zip(row, kinds, strict=True))), ''),
-                 'first' if row[0] != '' else '') for row in rows]
+    lines = []
+    group: object = ''
+    for row in rows:
+        begins = row[0] != ''
+        group = row[0] if begins else group
+        cells = [group if begins or group == '' else heard(group), *row[1:]]
+        lines.append(tag('tr', join((_cell(cell, kind, place) for place, (cell, kind) in
+                                     enumerate(zip(cells, kinds, strict=True))), ''),
+                         'first' if begins else ''))
     size = ' class="dense"' if len(head) > MANY else ''
     return Markup(f'<div class="wide" role="group" tabindex="0" aria-label="{escape(caption)}">'
                   f'<table{size}>{tag("caption", caption)}<thead><tr>{titles}</tr></thead>\n'
@@ -73,11 +85,13 @@ def drawing(content: object, alt: str, caption: str, data: object = None) -> Mar
     """
     Return an SVG element as a figure, which can be scrolled where it is wider than it fits.
 
-    Args: data: values from which web/page.js draws it in its place, or None.
+    Args: alt: what it shows, in place of the marks and numbers of the element; data: values from
+    which web/page.js draws it in its place, or None.
     """
     moving = script_data(data) if data else ''
-    return Markup(f'<figure><div class="picture" role="group" tabindex="0" aria-label='
-                  f'"{escape(alt)}">{content}</div>{moving}{tag("figcaption", caption)}</figure>')
+    return Markup(f'<figure><div class="picture" role="img" tabindex="0" aria-label='
+                  f'"{escape(alt)}"><div aria-hidden="true">{content}</div></div>{moving}'
+                  f'{tag("figcaption", caption)}</figure>')
 
 
 def script_data(data: object) -> Markup:

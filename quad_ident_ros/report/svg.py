@@ -48,17 +48,16 @@ def drawings(figures: dict[str, Figure], folder: str | Path) -> dict[str, Markup
         for name, figure in figures.items():
             file = Path(folder) / f'{name}.svg'
             figure.save(file)
-            drawn[name] = drawing(inline(file, name, figure.alt), figure.alt, figure.caption,
+            drawn[name] = drawing(inline(file, name), figure.alt, figure.caption,
                                   figure.data)
     return drawn
 
 
-def inline(path: str | Path, name: str, alt: str) -> Markup:
+def inline(path: str | Path, name: str) -> Markup:
     """
     Return an SVG file of Matplotlib as an element of a page.
 
-    Args: name: what distinguishes its ids from those of other pictures of the page; alt: what it
-    shows.
+    name: what distinguishes its ids from those of other pictures of the page.
     """
     text = Path(path).read_text(encoding='utf-8')
     text = re.sub(r'<metadata>.*?</metadata>|<!--.*?-->|<style[^>]*>.*?</style>', '',
@@ -74,5 +73,5 @@ def inline(path: str | Path, name: str, alt: str) -> Markup:
     # A hundredth of a point is less than any screen or printer shows.
     text = re.sub(r' (?:d|x|y|transform)="[^"]*"',
                   lambda one: re.sub(r'(\.\d\d)\d+', r'\1', one[0]), text)
-    return Markup(re.sub(r'<svg ([^>]*?)width="[^"]*"', rf'<svg role="img" aria-label="{alt}" \1',
+    return Markup(re.sub(r'<svg ([^>]*?)width="[^"]*"', r'<svg \1',
                          re.sub(r' height="[\d.]+pt"', '', text, count=1), count=1))

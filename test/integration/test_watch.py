@@ -111,6 +111,16 @@ class Terminal:
     def write(self, keys):
         os.write(self._fd, keys)
 
+    def hang_up(self):
+        """Close the terminal, as a connection that drops does, and return the exit code."""
+        os.close(self._fd)
+        end = os.pidfd_open(self.pid)
+        ended, *_ = select.select([end], [], [], DEADLINE)
+        os.close(end)
+        if not ended:
+            os.kill(self.pid, signal.SIGKILL)
+        return os.waitstatus_to_exitcode(os.waitpid(self.pid, 0)[1])
+
     def wait(self):
         """Return the exit code."""
         end = time.monotonic() + DEADLINE
@@ -142,3 +152,10 @@ def test_it_leaves_the_terminal_as_it_was(processes, end):
     assert b'\x1b[?1049l' in terminal.output and b'\x1b[?25h' in terminal.output
     assert b'Traceback' not in terminal.output
     assert not COLOUR.search(terminal.output)   # NO_COLOR
+
+
+def test_it_ends_with_the_connection(processes):
+    pytest.importorskip('textual', reason="Textual is not installed: pip install '.[watch]'")
+    terminal = Terminal(processes.environment)
+    terminal.read_until(b'quad_ident node recorder')
+    assert terminal.hang_up() == 0

@@ -143,7 +143,7 @@
       const left = link.at === null ? -10 : plot.valToPos(data.x[link.at], 'x');
       follow(() => plot.setCursor({left, top: left < 0 ? -10 : 0}));
       state.quiet = false;
-      told(head, field, data, panel, link.at);
+      told(head, field, data, panel, link);
     };
     new ResizeObserver(() => {
       follow(() => plot.setSize({width: field.clientWidth, height: HEIGHT}));
@@ -152,11 +152,12 @@
     redraws.push(() => plot.redraw(false, true));
     field.addEventListener('keydown', event => keys(link, event));
     field.addEventListener('pointerdown', () => { link.keyed = false; });
-    told(head, field, data, panel, null);
+    told(head, field, data, panel, link);
     return show;
   }
 
-  function told(head, field, data, panel, at) {
+  // Says the values at the cursor, or, where there is none, what each line spans in sight.
+  function told(head, field, data, panel, {at, span: [first, last]}) {
     const time = at === null ? '' : `${data.x[at]} ${data.unit}`;
     const value = line => line.values[at] ?? 'none';
     const parts = panel.lines.map(line => element('span', {class: `key ${line.style}`},
@@ -165,8 +166,13 @@
     head.replaceChildren(element('strong', {}, `${panel.title}, ${panel.unit}`),
                          time && `at ${time}`, ...parts);
     field.setAttribute('aria-valuenow', at ?? 0);
-    field.setAttribute('aria-valuetext', at === null ? 'no value chosen' :
-      [time, ...panel.lines.map(line => `${line.label} ${value(line)}`)].join(', '));
+    const extent = ({values}) => {
+      const seen = values.slice(first, last + 1).filter(one => one !== null);
+      return seen.length ? `${Math.min(...seen)} to ${Math.max(...seen)}` : 'none';
+    };
+    const said = panel.lines.map(
+      line => `${line.label} ${at === null ? extent(line) : value(line)}`);
+    field.setAttribute('aria-valuetext', [time || 'no value chosen', ...said].join(', '));
   }
 
   function options(data, panel, link, field, state) {
@@ -287,7 +293,7 @@
           ` at ${data.t[at]} s, x, y, z ${where(at)} m`;
         head.replaceChildren(
           element('strong', {}, `velocity error ${stage}`), ...at === null
-            ? ['0', element('span', {class: 'ramp'}), `${most.toPrecision(2)} m/s${place}`]
+            ? ['0', element('span', {class: 'ramp', role: 'img', 'aria-label': 'to'}), `${most.toPrecision(2)} m/s${place}`]
             : [`${error[at]} m/s${place}`]);
         picture(canvas, data, sides, view, link, error, most);
       };

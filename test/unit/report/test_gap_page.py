@@ -71,7 +71,7 @@ def test_the_verdict_comes_first_then_where_which_and_how_far(page, found):
         '<strong>Verdict: </strong>', '>drag of the rotors (rotor_drag)</span>', '<h2>Where</h2>',
         '<h2>Which effects</h2>', '<h2>How far</h2>', '<h2>Provenance</h2>')]
     assert places == sorted(places)
-    assert text.count('<svg role="img"') == 5 and '<img' not in text
+    assert text.count('class="picture" role="img"') == 5 and '<img' not in text
     assert not re.search(r'(src|href)="(?!#|data:)', text)     # one file holds it all
     assert not re.search(r'url\((?!#)|@import', text)
     assert f'explains {100 * found.gap.closed:.0f} % of the velocity gap above the noise.' in text
@@ -84,7 +84,7 @@ def test_a_flight_that_knows_no_position_has_no_path(page, found):
                   for one in found.pictures.wrench_before)
     text = page(pictures=replace(found.pictures, wrench_before=blind, wrench_after=blind))
     drawn = re.sub('<script>.*?</script>', '', text, flags=re.DOTALL)
-    assert drawn.count('<svg role="img"') == 4 and 'Flight path in space' not in drawn
+    assert drawn.count('class="picture" role="img"') == 4 and 'Flight path in space' not in drawn
 
 
 def test_the_terminal_has_the_same_order_and_the_size_beside_the_verdict(terminal, found):
@@ -488,8 +488,8 @@ def test_the_map_has_ink(tmp_path):
 def test_every_effect_has_its_probability_and_ids_are_unique(page, found):
     text = page()
     for row in found.ranking:
-        assert re.search(f'{re.escape(titled(row.effect))}</th><td>{row.probability:.2f}</td>',
-                         text)
+        assert re.search(f'{re.escape(titled(row.effect))}</th><td class="text">'
+                         f'{row.probability:.2f} <span', text)
     ids = re.findall(r'\bid="([^"]*)"', text)
     assert len(ids) == len(set(ids))
     assert set(re.findall(r'(?:url\(|href=")#([^")]*)', text)) <= set(ids)

@@ -240,6 +240,53 @@ def test_a_screen_reader_gets_names_and_numbers_of_every_picture(shown):
     assert rows.all_inner_texts() == ['0.1', '0.5', '1']
 
 
+def test_a_screen_reader_hears_what_a_picture_shows_and_not_its_marks(browser, path):
+    with opened(browser, path) as (page, *_):
+        assert page.locator('svg text').evaluate_all(
+            "all => all.filter(one => !one.closest('[aria-hidden=true]')).length") == 0
+        names = [one.get_attribute('aria-label') for one in page.get_by_role('img').all()]
+        assert all(names)
+
+
+def test_a_screen_reader_hears_where_the_map_and_the_gap_are_largest(shown):
+    page, _ = shown
+    page.get_by_text('The map in numbers').click()
+    label = page.get_by_role('img', name='by channel and regime').get_attribute('aria-label')
+    assert label.endswith('The tables under "The map in numbers" have every cell.')
+    for stage in ('before', 'after'):
+        most, name, where = re.search(rf'{stage}: (\S+) m/s by (\w+) \((.*?)\)', label).groups()
+        cells = page.get_by_role('table', name=f'in half a second, {stage} the diagnosis')
+        numbers = cells.get_by_role('cell').all_inner_texts()
+        assert max(float(one) for one in numbers) == float(most)
+        place = ('Fx', 'Fy', 'Fz', 'Mx', 'My', 'Mz').index(name)
+        row = cells.get_by_role('row').filter(has=page.get_by_role('rowheader', name=where))
+        assert row.get_by_role('cell').nth(place).inner_text() == most
+    gap = page.get_by_role('img', name='Gap by horizon').get_attribute('aria-label')
+    [row] = page.get_by_role('table', name='Velocity error by horizon').get_by_role(
+        'row').filter(has=page.get_by_role('rowheader', name='1', exact=True)).all()
+    before, _, after, noise = row.get_by_role('cell').all_inner_texts()
+    assert f'velocity {before} m/s before, {after} after, {noise} of noise' in gap
+
+
+def test_a_chart_without_a_cursor_says_what_its_lines_span_in_sight(shown, over_time):
+    page, data = shown
+    field, panel = over_time.nth(1), data['panels'][1]
+
+    def spans(first, last):
+        return 'no value chosen, ' + ', '.join(
+            f'{line["label"]} {min(line["values"][first:last + 1]):g} to '
+            f'{max(line["values"][first:last + 1]):g}' for line in panel['lines'])
+
+    assert field.get_attribute('aria-valuetext') == spans(0, len(data['x']) - 1)
+    tools = page.get_by_role('group', name='Zoom over time')
+    for _ in range(4):
+        tools.get_by_role('button', name='Zoom in').click()
+    shows = tools.get_by_role('status').inner_text()
+    first, last = (data['x'].index(float(one)) for one in re.findall(r'[\d.]+', shows))
+    assert field.get_attribute('aria-valuetext') == spans(first, last) != spans(
+        0, len(data['x']) - 1)
+
+
 def test_a_screen_reader_gets_every_cell_of_the_map(shown):
     page, _ = shown
     page.get_by_text('The map in numbers').click()
@@ -338,6 +385,23 @@ def test_a_table_of_a_fleet_is_sorted_by_keys(browser, fleet):
         assert page.evaluate(VEHICLES)[0] == 'uav7'
         head = page.get_by_role('columnheader', name=re.compile('rotor_drag'))
         assert head.get_attribute('aria-sort') == 'descending'
+
+
+def test_a_fleet_is_heard_without_its_colours_and_arrows(browser, fleet):
+    with opened(browser, fleet) as (page, *_):
+        odd = page.locator('td.no').filter(has_text='*')
+        for cell in odd.all():
+            assert cell.inner_text().endswith(f', {cell.get_attribute("title")}')
+        assert odd.count() == 2
+        assert page.locator('.first > li').first.inner_text().startswith('uav3 changed: from ')
+        # The arrows are not a part of the names, and aria-sort says what they show.
+        tree = page.context.new_cdp_session(page)
+        tree.send('Accessibility.enable')
+        names = [one['name']['value'] for one in tree.send('Accessibility.getFullAXTree')['nodes']
+                 if one.get('role', {}).get('value') == 'button']
+        assert 'vehicle' in names and not re.search('[↑↓↕]', ' '.join(names))
+        labels = [one.get_attribute('aria-label') for one in page.get_by_role('img').all()]
+        assert any('(thrust_scale) factor over ' in one for one in labels)
 
 
 def test_names_are_sorted_as_people_count_and_what_is_not_known_comes_last(browser, fleet):

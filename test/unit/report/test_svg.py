@@ -30,19 +30,19 @@ def coordinates(text):
 
 
 def test_lines_stay_where_they_are_and_words_what_they_are(picture):
-    text = inline(picture, 'name', 'alt')
+    text = inline(picture, 'name')
     given = coordinates(picture.read_text(encoding='utf-8'))
     np.testing.assert_allclose(coordinates(text), given, atol=0.01)
     assert '>1.23456 m<' in text
 
 
 def test_colours_are_those_of_the_page(picture):
-    text = inline(picture, 'name', 'alt')
+    text = inline(picture, 'name')
     assert '#d55e00' not in text and 'stroke: var(--before)' in text
 
 
 def test_ids_are_those_that_are_referred_to_and_of_this_picture(picture):
-    text = inline(picture, 'name', 'alt')
+    text = inline(picture, 'name')
     wanted = re.findall(r'(?:href="|url\()#([^")]+)', text)
     assert wanted and set(re.findall(r'id="([^"]*)"', text)) == set(wanted)
     assert all(one.startswith('name-') for one in wanted)
@@ -60,7 +60,7 @@ def test_a_line_without_its_invisible_points_is_the_same_line(tmp_path):
             np.stack([x, np.sin(20.0 * x)], axis=1)).T
         height = 72 * figure.get_figheight()
         plt.close(figure)
-    drawn = coordinates(inline(tmp_path / 'line.svg', 'name', 'alt')).reshape(-1, 2)
+    drawn = coordinates(inline(tmp_path / 'line.svg', 'name')).reshape(-1, 2)
     assert len(drawn) < 400
     slope = np.gradient(up, across)
     off = (np.interp(across, drawn[:, 0], height - drawn[:, 1]) - up) / np.hypot(1.0, slope)
