@@ -28,7 +28,7 @@ from quad_ident_ros.diagnose.frame import (
     frame_at,
     normal_at,
 )
-from quad_ident_ros.diagnose.promising import other_actuators, promising, REFITS
+from quad_ident_ros.diagnose.promising import neighbours, other_actuators, promising, REFITS
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.diagnose.selection import posteriors, Selection
 from quad_ident_ros.diagnose.standard_errors import joint_of
@@ -202,12 +202,15 @@ class _Search:
             self.judge(best)
             self.ranked = beam(self.quadratic, {cause: self.rows[cause] for cause in
                                                 (*self.causes, *self.nuisances)}, self.rules)
-            self.try_promising()
-            self.best = self.order()[0]
-            on_progress((turn + 1) / ROUNDS)
-            # Sets that are about alike would only take turns, each the best around the other.
-            if self.best.evidence <= self.judge(best).evidence + self.rules.alike:
+            for found in (promising(self.ranked, self.tried), self.near(best)):
+                self.try_sets(found)
+                self.best = self.order()[0]
+                # Sets that are about alike would only take turns, each the best around the other.
+                if self.best.evidence > self.judge(best).evidence + self.rules.alike:
+                    break
+            else:
                 break
+            on_progress((turn + 1) / ROUNDS)
             best = self.best.chosen
 
     def stand_at(self, chosen: tuple) -> None:
@@ -265,9 +268,14 @@ class _Search:
         """Return the Fitted sets, the one with the most evidence first."""
         return sorted(self.judged.values(), key=lambda one: -one.evidence)
 
-    def try_promising(self) -> None:
-        """Fit the sets that the linear model finds promising, and judge them."""
-        for chosen, distances in promising(self.ranked, self.tried):
+    def near(self, best: tuple) -> list[tuple[tuple, np.ndarray]]:
+        """Return the promising sets next to the one around which the flights are linearised."""
+        return neighbours(best, (*self.causes, *self.nuisances), self.quadratic, self.rows,
+                          self.rules, self.tried)
+
+    def try_sets(self, sets: list[tuple[tuple, np.ndarray]]) -> None:
+        """Fit sets from their distances by the linear model, and judge them."""
+        for chosen, distances in sets:
             start = nominal(self.vehicle)
             lower, upper, _ = limits(self.vehicle)
             start[self.columns] += distances[:len(self.columns)]
