@@ -48,7 +48,12 @@ def verdict_line(found: Diagnosis) -> str:
         return f'{titled(named[0].effect)}, {values_of(named[0])}, explains {share}{beside}'
     return f'{len(named)} effects explain {share}: ' + '; '.join(
         f'{titled(row.effect)}, {values_of(row)}, contribution {contribution_of(row)}'
-        for row in named) + beside
+        + _doubted(row) for row in named) + beside
+
+
+def _doubted(row: Ranked) -> str:
+    """Return the probability of a named effect that is less likely present than not."""
+    return f', uncertain (probability {row.probability:.2g})' * (row.probability < RULES.present)
 
 
 def size_line(found: Diagnosis) -> str:

@@ -325,6 +325,7 @@ def test_effects_that_are_less_likely_than_not_are_no_certain_verdict(terminal, 
     likely = replace(first, probability=0.6)
     verdict = terminal(verdict=names, ranking=(likely, second)).splitlines()[0]
     assert verdict.startswith('verdict: 2 effects explain ')
+    assert verdict.endswith(', uncertain (probability 0.16)') and '0.6)' not in verdict
 
 
 def test_the_verdict_of_nothing_known_names_no_effect(terminal, found):
