@@ -76,8 +76,13 @@ def next_step(found: Diagnosis, written: str | None = None) -> str:
         return ('Next: check the vehicle file, which seems to be that of another vehicle, as the '
                 'warning "vehicle file" says, and diagnose again.')
     if 'unknown' in found.verdict:
-        return ('Next: the lines "unexplained" and "differs" say in which channel, regime and '
+        rest = ('Next: the lines "unexplained" and "differs" say in which channel, regime and '
                 'flight the rest occurs.')
+        # What calm flights hardly show, a brisk one that is predicted needs.
+        alone = [one.flight for one in found.flight_checks if one.differs] == [found.held_out]
+        return (f'{rest} Only {found.held_out} differs, which was not used for fitting: if it '
+                'moves more than the others, hold out one of them instead (--hold-out FLIGHT).'
+                if alone and len(found.flight_checks) > 2 else rest)
     if found.fly_next:
         return ('Next: fly what the table "what to fly next" proposes, and diagnose again with '
                 'the new flights.')

@@ -304,7 +304,8 @@ def test_what_cannot_be_told_apart_beside_a_larger_effect_ends_the_sentence(term
 
 def test_each_of_several_effects_is_told_with_its_size(terminal, found):
     first, second, *_ = found.ranking
-    second = replace(second, contribution=0.2, parameters={'x': Value(2.0, 0.1, 'm/s', 0.5)})
+    second = replace(second, probability=0.8, contribution=0.2,
+                     parameters={'x': Value(2.0, 0.1, 'm/s', 0.5)})
     verdict, size, *_ = terminal(verdict=(first.effect, second.effect),
                                  ranking=(first, second)).splitlines()
     assert verdict.startswith('verdict: 2 effects explain ')
@@ -326,6 +327,16 @@ def test_effects_that_are_less_likely_than_not_are_no_certain_verdict(terminal, 
     verdict = terminal(verdict=names, ranking=(likely, second)).splitlines()[0]
     assert verdict.startswith('verdict: 2 effects explain ')
     assert verdict.endswith(', uncertain (probability 0.16)') and '0.6)' not in verdict
+
+
+@pytest.mark.parametrize(('differing', 'said'), [
+    (('held',), True), (('monday',), False), (('monday', 'held'), False), ((), False)])
+def test_where_only_the_flight_held_out_differs_another_one_may_be_held_out(
+        terminal, found, differing, said):
+    checks = tuple(FlightCheck(name, {'velocity': 1.1}, name in differing)
+                   for name in ('monday', 'tuesday', 'held'))
+    text = terminal(verdict=('unknown',), flight_checks=checks, held_out='held')
+    assert ('Only held differs' in text and '(--hold-out FLIGHT)' in text) is said
 
 
 def test_the_verdict_of_nothing_known_names_no_effect(terminal, found):
