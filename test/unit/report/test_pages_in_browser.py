@@ -107,6 +107,14 @@ def test_the_effects_fit_a_desk_with_the_longest_title(browser, gap):
         assert cut <= 0
 
 
+def test_the_verdict_fits_a_telephone_with_the_longest_title(browser, gap):
+    """Its title was on one line, beyond the right edge."""
+    with opened(browser, gap, 390) as (page, *_):
+        page.evaluate("""() => { document.querySelector('.tag').textContent =
+            'misaligned attitude or gyro (attitude_misalignment)'; }""")
+        assert page.evaluate('document.documentElement.scrollWidth') == 390
+
+
 FIELDS = '.field'
 PICTURES = "() => [...document.querySelectorAll('.live canvas')].map(one => one.toDataURL())"
 
