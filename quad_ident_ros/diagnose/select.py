@@ -206,11 +206,12 @@ class _Search:
                 self.try_sets(found)
                 self.best = self.order()[0]
                 # Sets that are about alike would only take turns, each the best around the other.
-                if self.best.evidence > self.judge(best).evidence + self.rules.alike:
+                better = self.best.evidence > self.judge(best).evidence + self.rules.alike
+                if better:
                     break
-            else:
-                break
             on_progress((turn + 1) / ROUNDS)
+            if not better:
+                break
             best = self.best.chosen
 
     def stand_at(self, chosen: tuple) -> None:
