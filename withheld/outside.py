@@ -256,7 +256,7 @@ class Branches(Influence):
 
 class Leash(Force):
     """
-    A line of safety, which is slack near its pole and pulls beyond its length.
+    A safety line, which is slack near its pole and pulls beyond its length.
 
     As vehicles are tied up in tests in practice; it pulls as a spring does, and never pushes.
     """

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which effects explain flights: sets of candidates compared jointly, each refitted."""
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 
 import numpy as np
 from scipy.linalg import block_diag
@@ -202,15 +202,16 @@ class _Search:
             self.judge(best)
             self.ranked = beam(self.quadratic, {cause: self.rows[cause] for cause in
                                                 (*self.causes, *self.nuisances)}, self.rules)
-            for found in (promising(self.ranked, self.tried), self.near(best)):
-                self.try_sets(found)
+            for sets in self.worth_fitting(best):
+                self.try_sets(sets)
                 self.best = self.order()[0]
                 # Sets that are about alike would only take turns, each the best around the other.
-                if self.best.evidence > self.judge(best).evidence + self.rules.alike:
+                better = self.best.evidence > self.judge(best).evidence + self.rules.alike
+                if better:
                     break
-            else:
-                break
             on_progress((turn + 1) / ROUNDS)
+            if not better:
+                break
             best = self.best.chosen
 
     def stand_at(self, chosen: tuple) -> None:
@@ -268,10 +269,12 @@ class _Search:
         """Return the Fitted sets, the one with the most evidence first."""
         return sorted(self.judged.values(), key=lambda one: -one.evidence)
 
-    def near(self, best: tuple) -> list[tuple[tuple, np.ndarray]]:
-        """Return the promising sets next to the one around which the flights are linearised."""
-        return neighbours(best, (*self.causes, *self.nuisances), self.quadratic, self.rows,
-                          self.rules, self.tried)
+    def worth_fitting(self, best: tuple) -> Iterator[list[tuple[tuple, np.ndarray]]]:
+        """Yield what the beam finds promising, then what is next to the set it stands at."""
+        yield promising(self.ranked, self.tried)
+        # Asked for only now: what has just been fitted is not to take the places of others.
+        yield neighbours(best, (*self.causes, *self.nuisances), self.quadratic, self.rows,
+                         self.rules, self.tried)
 
     def try_sets(self, sets: list[tuple[tuple, np.ndarray]]) -> None:
         """Fit sets from their distances by the linear model, and judge them."""

@@ -29,8 +29,7 @@ def verdict_line(found: Diagnosis) -> str:
     doubts = (f'the flights cannot distinguish between {_listed(found.undetermined)}'
               if found.undetermined else '')
     if 'undetermined' in found.verdict:
-        certain = f'; certain: {_listed(found.sure)}' if found.sure else ''
-        return f'undetermined: {doubts}{certain}'
+        return f'undetermined: {doubts}{_others(found)}'
     named = _named(found)
     if not named:
         return 'unknown: no known effect explains the gap'
@@ -49,6 +48,15 @@ def verdict_line(found: Diagnosis) -> str:
     return f'{len(named)} effects explain {share}: ' + '; '.join(
         f'{titled(row.effect)}, {values_of(row)}, contribution {contribution_of(row)}'
         + _doubted(row) for row in named) + beside
+
+
+def _others(found: Diagnosis) -> str:
+    """Return what a verdict names beside effects that cannot be told apart, in words."""
+    rows = [row for row in found.ranking if row.effect in found.sure]
+    likely = [row.effect for row in rows if row.probability >= RULES.present]
+    certain = f'; certain: {_listed(likely)}' if likely else ''
+    return certain + ''.join(f'; {titled(row.effect)}{_doubted(row)}' for row in rows
+                             if row.effect not in likely)
 
 
 def _doubted(row: Ranked) -> str:

@@ -293,7 +293,8 @@
           ` at ${data.t[at]} s, x, y, z ${where(at)} m`;
         head.replaceChildren(
           element('strong', {}, `velocity error ${stage}`), ...at === null
-            ? ['0', element('span', {class: 'ramp', role: 'img', 'aria-label': 'to'}), `${most.toPrecision(2)} m/s${place}`]
+            ? ['0', element('span', {class: 'ramp', role: 'img', 'aria-label': 'to'}),
+               `${most.toPrecision(2)} m/s${place}`]
             : [`${error[at]} m/s${place}`]);
         picture(canvas, data, sides, view, link, error, most);
       };

@@ -356,21 +356,22 @@ def test_uncertain_effects_are_named_as_few_as_close_half_of_the_gap(drag, thrus
     assert [cause.effect for cause in fewest.effects] == expected
 
 
-@pytest.mark.parametrize(('without', 'contributions', 'expected'), [
-    (0.2, (0.7, 0.6), ['inertia']),         # the only one whose absence leaves something
-    (0.2, (0.7, 0.3), []),                  # it contributes less than half of any gap
-    (NOISE['rate'], (0.7, 0.6), [])])       # nothing is unknown without it
+@pytest.mark.parametrize(('whole', 'without', 'contributions', 'expected'), [
+    (NOISE['rate'], 0.2, (0.7, 0.6), ['inertia']),  # the only one whose absence leaves something
+    (NOISE['rate'], 0.2, (0.7, 0.3), []),           # it contributes less than half of any gap
+    (NOISE['rate'], NOISE['rate'], (0.7, 0.6), []),     # nothing is unknown without it
+    (0.19, 0.2, (0.7, 0.6), [])])                   # something is unknown beside it, too
 def test_improbable_effects_that_contribute_half_of_a_gap_are_named_in_place_of_unknown(
-        without, contributions, expected):
+        whole, without, contributions, expected):
     drag, lag, inertia = (Candidate(name, name, (k,))
                           for k, name in enumerate(('drag', 'lag', 'inertia')))
 
     def model(effects):
-        rate = NOISE['rate'] if inertia in effects else without
-        return SimpleNamespace(effects=effects, gap=of(rate=rate))
+        return SimpleNamespace(effects=effects,
+                               gap=of(rate=whole if inertia in effects else without))
 
-    def absent(whole, removed):
-        return model(tuple(cause for cause in whole.effects if cause not in removed))
+    def absent(full, removed):
+        return model(tuple(cause for cause in full.effects if cause not in removed))
 
     bench = SimpleNamespace(absent=absent, rules=RULES)
     weights = {cause: Weight(share, 3.0, 1.0, {}, 2.0)

@@ -293,6 +293,17 @@ def test_what_cannot_be_told_apart_asks_for_a_flight(page, terminal):
     assert '\nNext: fly what ' in terminal(**changes)
 
 
+def test_what_is_less_likely_than_not_is_not_certain_beside_what_cannot_be_told_apart(
+        terminal, found):
+    changes = {'verdict': ('undetermined',), 'undetermined': ('motor_lag', 'actuation_delay'),
+               'sure': ('rotor_drag',),
+               'ranking': tuple(replace(row, probability=0.37) if row.effect == 'rotor_drag'
+                                else row for row in found.ranking)}
+    verdict = terminal(**changes).splitlines()[0]
+    assert verdict.endswith(' and delay of the commands (actuation_delay); drag of the rotors '
+                            '(rotor_drag), uncertain (probability 0.37)')
+
+
 def test_what_cannot_be_told_apart_beside_a_larger_effect_ends_the_sentence(terminal, found):
     changes = {'undetermined': ('motor_lag', 'actuation_delay'), 'sure': ('rotor_drag',)}
     verdict, size, *_ = terminal(**changes).splitlines()
