@@ -204,15 +204,15 @@ class _Search:
                                                 (*self.causes, *self.nuisances)}, self.rules)
             for sets in self.worth_fitting(best):
                 self.try_sets(sets)
-                self.best = self.order()[0]
+                self.best = found = self.order()[0]
                 # Sets that are about alike would only take turns, each the best around the other.
-                better = self.best.evidence > self.judge(best).evidence + self.rules.alike
+                better = found.evidence > self.judge(best).evidence + self.rules.alike
                 if better:
                     break
             on_progress((turn + 1) / ROUNDS)
             if not better:
                 break
-            best = self.best.chosen
+            best = found.chosen
 
     def stand_at(self, chosen: tuple) -> None:
         """Linearise around a fitted set; the best of those judged before are judged again."""
