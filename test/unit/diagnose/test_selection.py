@@ -124,9 +124,17 @@ def test_a_round_that_finds_nothing_better_is_progress_too(monkeypatch):
 def test_what_the_beam_found_is_not_fitted_again_next_to_the_best_set(monkeypatch):
     evidence = {(): 0.0, (EFFECT,): -5.0, (OTHER,): 2.0 * RULES.alike}
     search, fits = looking(monkeypatch, evidence, [(EFFECT,)], [(EFFECT,), (OTHER,)])
-    search.look_among((EFFECT, OTHER), lambda share: None)
+    search.look_among((EFFECT, OTHER), lambda share: None, near=True)
     assert fits == [(EFFECT,), (OTHER,)]
     assert search.best.chosen == (OTHER,)
+
+
+def test_sets_next_to_the_best_one_wait_for_the_end_of_the_search(monkeypatch):
+    """Early on they lead real flights elsewhere, as what is fitted then is far from its end."""
+    evidence = {(): 0.0, (EFFECT,): -5.0, (OTHER,): 2.0 * RULES.alike}
+    search, fits = looking(monkeypatch, evidence, [(EFFECT,)], [(OTHER,)])
+    search.look_among((EFFECT, OTHER), lambda share: None)
+    assert fits == [(EFFECT,)] and search.chosen == ()
 
 
 def test_nothing_is_fitted_next_to_a_set_that_the_beam_improves(monkeypatch):
@@ -134,7 +142,7 @@ def test_nothing_is_fitted_next_to_a_set_that_the_beam_improves(monkeypatch):
     search, fits = looking(monkeypatch, evidence, [(EFFECT,)])
     asked = []
     monkeypatch.setattr(selecting, 'neighbours', lambda best, *_: asked.append(best) or [])
-    search.look_among((EFFECT, OTHER), lambda share: None)
+    search.look_among((EFFECT, OTHER), lambda share: None, near=True)
     assert fits == [(EFFECT,)] and asked == [(EFFECT,)]
 
 
