@@ -3,14 +3,12 @@
 """Which sets of candidates are worth fitting next."""
 
 from collections.abc import Collection, Sequence
-from itertools import combinations
 
 import numpy as np
 
 from quad_ident_ros.diagnose.candidates import Candidate
-from quad_ident_ros.diagnose.evidence import excludes, key_of, linear_evidence, Quadratic
+from quad_ident_ros.diagnose.evidence import key_of
 from quad_ident_ros.diagnose.fitted import effects_in
-from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.greybox.parameters import limits, nominal
 from quad_ident_ros.model.vehicle import Vehicle
@@ -34,27 +32,6 @@ def promising(ranked: list, tried: Collection[tuple]) -> list[tuple[tuple, np.nd
               if value > most - NEAR and chosen not in tried and chosen not in first
               and len(chosen) == len(top) and _swapped(chosen, top)]
     return [*fresh[:REFITS], *rivals[:REFITS]]
-
-
-def neighbours(best: tuple, causes: Sequence[Candidate], quadratic: Quadratic, rows: dict,
-               rules: Rules, tried: Collection[tuple]) -> list[tuple[tuple, np.ndarray]]:
-    """
-    Return [(set, distances)] of the untried sets next to the best one that are worth refitting.
-
-    They have one candidate more, or another in the place of one, and clearly more evidence by the
-    slopes, which are those at the best set: what differs from it in much they tell less well. The
-    search from the empty set on may never pass by them.
-    Args: quadratic around the best set; rows {candidate: its rows}; tried: sets that were fitted.
-    """
-    more = [(cause, *kept) for kept in (best, *combinations(best, max(0, len(best) - 1)))
-            for cause in causes if cause not in best
-            and not any(excludes(cause, other) for other in kept)]
-    sets = [chosen for chosen in dict.fromkeys(map(key_of, more)) if chosen not in tried]
-    if not sets:
-        return []
-    values, distances = linear_evidence(quadratic, [best, *sets], rows, rules)
-    order = np.argsort(-values[1:], kind='stable')[:REFITS]
-    return [(sets[k], distances[1 + k]) for k in order if values[1 + k] > values[0] + rules.alike]
 
 
 def other_actuators(best: tuple, causes: Sequence[Candidate], z: np.ndarray, vehicle: Vehicle

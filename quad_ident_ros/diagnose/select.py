@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which effects explain flights: sets of candidates compared jointly, each refitted."""
 
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Sequence
 
 import numpy as np
 from scipy.linalg import block_diag
@@ -28,7 +28,7 @@ from quad_ident_ros.diagnose.frame import (
     frame_at,
     normal_at,
 )
-from quad_ident_ros.diagnose.promising import neighbours, other_actuators, promising, REFITS
+from quad_ident_ros.diagnose.promising import other_actuators, promising, REFITS
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.diagnose.selection import posteriors, Selection
 from quad_ident_ros.diagnose.standard_errors import joint_of
@@ -91,12 +91,6 @@ def _searched(search: '_Search', on_progress: Callable[[float], None]) -> '_Sear
             break
         search.look_among(causes, lambda share: None)
         search.settle()
-    for _ in range(1 + PASSES):
-        chosen = search.chosen
-        search.look_among(causes, lambda share: None, near=True)
-        search.settle()
-        if search.chosen == chosen or not search.weigh_anew():
-            break
     on_progress(1.0)
     return search
 
@@ -194,40 +188,27 @@ class _Search:
                       for sizes in ((force, moment), (0.0, 0.0)))
         return np.repeat([force, moment], AXES) if gain - none > self.rules.alike else None
 
-    @property
-    def chosen(self) -> tuple:
-        """Return the best set so far, the empty one before there is any."""
-        return self.best.chosen if self.best else ()
-
-    def look_among(self, causes: tuple[Candidate, ...], on_progress: Callable[[float], None],
-                   near: bool = False) -> None:
-        """
-        Look for better sets of some candidates around the best one until there is none.
-
-        near: among those next to it, too, where the beam finds nothing better.
-        """
+    def look_among(self, causes: tuple[Candidate, ...], on_progress: Callable[[float], None]
+                   ) -> None:
+        """Look for better sets of some candidates around the best one until there is none."""
         self.causes = causes
         self.columns = sorted({column for cause in (*causes, *self.all_causes)
                                if cause in causes or any(cause in key for key in self.tried)
                                for column in cause.columns})
         self.rows = _rows(self.all_causes, self.nuisances, self.columns, len(self.flights))
-        best = self.chosen
+        best = self.best.chosen if self.best else ()
         for turn in range(ROUNDS):
             self.stand_at(best)
             self.judge(best)
             self.ranked = beam(self.quadratic, {cause: self.rows[cause] for cause in
                                                 (*self.causes, *self.nuisances)}, self.rules)
-            for sets in self.worth_fitting(best, near):
-                self.try_sets(sets)
-                self.best = found = self.order()[0]
-                # Sets that are about alike would only take turns, each the best around the other.
-                better = found.evidence > self.judge(best).evidence + self.rules.alike
-                if better:
-                    break
+            self.try_promising()
+            self.best = self.order()[0]
             on_progress((turn + 1) / ROUNDS)
-            if not better:
+            # Sets that are about alike would only take turns, each the best around the other.
+            if self.best.evidence <= self.judge(best).evidence + self.rules.alike:
                 break
-            best = found.chosen
+            best = self.best.chosen
 
     def stand_at(self, chosen: tuple) -> None:
         """Linearise around a fitted set; the best of those judged before are judged again."""
@@ -284,18 +265,9 @@ class _Search:
         """Return the Fitted sets, the one with the most evidence first."""
         return sorted(self.judged.values(), key=lambda one: -one.evidence)
 
-    def worth_fitting(self, best: tuple, near: bool
-                      ) -> Iterator[list[tuple[tuple, np.ndarray]]]:
-        """Yield what the beam finds promising, then what is next to the set it stands at."""
-        yield promising(self.ranked, self.tried)
-        # Asked for only now: what has just been fitted is not to take the places of others.
-        if near:
-            yield neighbours(best, (*self.causes, *self.nuisances), self.quadratic, self.rows,
-                             self.rules, self.tried)
-
-    def try_sets(self, sets: list[tuple[tuple, np.ndarray]]) -> None:
-        """Fit sets from their distances by the linear model, and judge them."""
-        for chosen, distances in sets:
+    def try_promising(self) -> None:
+        """Fit the sets that the linear model finds promising, and judge them."""
+        for chosen, distances in promising(self.ranked, self.tried):
             start = nominal(self.vehicle)
             lower, upper, _ = limits(self.vehicle)
             start[self.columns] += distances[:len(self.columns)]

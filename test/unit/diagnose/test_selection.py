@@ -90,62 +90,6 @@ def searched(costs, evidence):
     return search
 
 
-def looking(monkeypatch, evidence, by_beam=(), near=()):
-    """Return a search around the empty set, and the sets that it fits, {set: log evidence}."""
-    search, fits = searched(dict.fromkeys(evidence, 0.0), evidence), []
-    search.tried, search.judged = {(): search.tried[()]}, {}
-    search.all_causes, search.nuisances = (EFFECT, OTHER), ()
-    search.flights, search.best = [], None
-    search.stand_at = lambda chosen: None
-    monkeypatch.setattr(selecting, 'beam', lambda *_: [])
-    monkeypatch.setattr(selecting, 'promising', lambda ranked, tried: fresh(by_beam, tried))
-    monkeypatch.setattr(selecting, 'neighbours', lambda *args: fresh(near, args[-1]))
-
-    def fresh(sets, tried):
-        return [chosen for chosen in sets if chosen not in tried]
-
-    def try_sets(sets):
-        for chosen in sets:
-            fits.append(chosen)
-            search.tried[chosen] = SimpleNamespace(cost=0.0)
-            search.judge(chosen)
-
-    search.try_sets = try_sets
-    return search, fits
-
-
-def test_a_round_that_finds_nothing_better_is_progress_too(monkeypatch):
-    search, _ = looking(monkeypatch, {(): 0.0})
-    shares = []
-    search.look_among((EFFECT, OTHER), shares.append)
-    assert shares == [pytest.approx(1.0 / selecting.ROUNDS)]
-
-
-def test_what_the_beam_found_is_not_fitted_again_next_to_the_best_set(monkeypatch):
-    evidence = {(): 0.0, (EFFECT,): -5.0, (OTHER,): 2.0 * RULES.alike}
-    search, fits = looking(monkeypatch, evidence, [(EFFECT,)], [(EFFECT,), (OTHER,)])
-    search.look_among((EFFECT, OTHER), lambda share: None, near=True)
-    assert fits == [(EFFECT,), (OTHER,)]
-    assert search.best.chosen == (OTHER,)
-
-
-def test_sets_next_to_the_best_one_wait_for_the_end_of_the_search(monkeypatch):
-    """Early on they lead real flights elsewhere, as what is fitted then is far from its end."""
-    evidence = {(): 0.0, (EFFECT,): -5.0, (OTHER,): 2.0 * RULES.alike}
-    search, fits = looking(monkeypatch, evidence, [(EFFECT,)], [(OTHER,)])
-    search.look_among((EFFECT, OTHER), lambda share: None)
-    assert fits == [(EFFECT,)] and search.chosen == ()
-
-
-def test_nothing_is_fitted_next_to_a_set_that_the_beam_improves(monkeypatch):
-    evidence = {(): 0.0, (EFFECT,): 2.0 * RULES.alike}
-    search, fits = looking(monkeypatch, evidence, [(EFFECT,)])
-    asked = []
-    monkeypatch.setattr(selecting, 'neighbours', lambda best, *_: asked.append(best) or [])
-    search.look_among((EFFECT, OTHER), lambda share: None, near=True)
-    assert fits == [(EFFECT,)] and asked == [(EFFECT,)]
-
-
 def test_a_form_at_its_bound_gives_way_to_the_best_of_all_sets_that_were_fitted(monkeypatch):
     """The usual form in its place is far worse here than a set that was not judged of late."""
     usual, odd = Candidate('a', 'usual', (0,)), Candidate('a', 'odd', (0,), usual=False)
