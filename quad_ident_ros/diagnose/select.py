@@ -48,7 +48,7 @@ from quad_ident_ros.model.vehicle import Vehicle
 ROUNDS = 6
 KEPT = 10           # fitted sets that are judged again around each new best one
 PASSES = 3          # times, at most, in each stage, that the noise is estimated again
-ONCE = 0.8          # of the progress, which a search has that is hardly ever repeated
+ONCE = 0.8          # share of the progress for the first search: a second one is rare
 LOST = 4.0          # times the scatter that a fit may cost more than a subset does
 
 

@@ -58,7 +58,7 @@ def small_multiple(one: History, unit: str, factor: float) -> Markup:
 
 
 def in_words(one: History, unit: str, factor: float) -> str:
-    """Return what a picture shows, for who does not see it."""
+    """Return what a picture shows, for readers who cannot see it."""
     series, in_unit = one.series, f' in {unit}' if unit not in ('1', '') else ''
     told = [f'{with_configuration(series.vehicle, series.configuration)}, '
             f'{titled(series.effect)} {series.parameter}{in_unit} over '

@@ -42,7 +42,7 @@ class FlightPath:
                 'errors': {stage: rounded(one) for stage, one in self.errors.items()}, **FROM}
 
     def in_words(self) -> str:
-        """Return where the errors are largest, for who does not see the picture."""
+        """Return where the errors are largest, for readers who cannot see the picture."""
         places = []
         for stage, error in self.errors.items():
             worst = int(np.argmax(error))

@@ -100,7 +100,7 @@ def _where(found: Diagnosis, pictures: dict) -> list:
 
 
 def _map_in_numbers(found: Diagnosis) -> Markup:
-    """Return every cell of the map as a cell of a table, for who does not see its colours."""
+    """Return every cell of the map in a table, for readers who cannot see its colours."""
     pictures, head = found.pictures, ['regime, third', *(f'{name}, m/s' for name in CHANNELS)]
     names = regimes(pictures.wrench_before)
     return details('The map in numbers', join(table(

@@ -60,7 +60,7 @@ def save_horizons(gap: Gap, path: str | Path) -> None:
 
 
 def horizons_in_words(gap: Gap) -> str:
-    """Return the gap at the longest horizon, for who does not see the picture of all."""
+    """Return the gap at the longest horizon, for readers who cannot see the picture."""
     horizon, last = max(gap.horizons.items(), key=lambda one: float(one[0]))
     return f'At {float(horizon):g} s: ' + '; '.join(
         f'{group} {last["before"][group]:.3g} {gap.units[group]} before, '
@@ -121,7 +121,7 @@ def map_rows(flights: tuple[ResidualWrench, ...], names: list[str],
 
 
 def map_in_words(flights: tuple[ResidualWrench, ...], vehicle: Vehicle) -> str:
-    """Return the largest number of a map and its place, for who does not see its colours."""
+    """Return the largest number of a map and its place, for readers who cannot see its colours."""
     names = regimes(flights)
     cells = _by_third(flights, names, vehicle)
     channel, column = np.unravel_index(np.nanargmax(cells), cells.shape)

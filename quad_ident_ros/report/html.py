@@ -32,7 +32,7 @@ def tag(name: str, content: object, kind: str = '') -> Markup:
 
 
 def heard(content: object) -> Markup:
-    """Return content for who hears the page; it is not seen."""
+    """Return content that a screen reader reads out, and that is not seen."""
     return tag('span', content, 'heard')
 
 
@@ -48,9 +48,9 @@ def table(head: Sequence[object], rows: Iterable[Sequence[object]], kinds: Itera
 
     Args: head: titles of the columns; rows: lists of cells, each text or Markup, or a td element
     of its own; kinds: class of each column, by default 'text' for the first and numbers after it.
-    A row whose first cell is not empty begins a group, and that cell is the title of its row; it
-    is that of the others of the group, too, for who hears the table. A table of many columns is
-    set smaller.
+    A row whose first cell is not empty begins a group, and that cell is the title of its row; a
+    screen reader reads it out for the other rows of the group, too. A table of many columns is set
+    smaller.
     """
     kinds = tuple(kinds) or ('text',) + ('',) * (len(head) - 1)
     titles = join((_title(title, 'col', kind and 'text') if title else tag('td', '')

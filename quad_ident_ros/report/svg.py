@@ -31,8 +31,8 @@ class Figure:
     """
     A picture with its words.
 
-    save: a function that saves it at a path, by whose ending; alt: what it shows, for who does
-    not see it; data: its values for the script of a page, None where there is nothing to move.
+    save: a function that saves it at a path, by whose ending; alt: what it shows, for readers who
+    cannot see it; data: its values for the script of a page, None where there is nothing to move.
     """
 
     save: Callable[[str | Path], None]

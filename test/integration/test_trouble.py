@@ -47,7 +47,7 @@ def test_a_topic_that_is_silent_is_named(graph):
     stamps = iter(range(10 ** 9, 10 ** 12, 10 ** 7))
     status = _fly_until_it_is_said(graph, vehicle, lambda v: v.send(next(stamps)), 'twist')
     assert status.level == DiagnosticStatus.WARN
-    # The same answer for who asks for what there is.
+    # A request for what there is gets the same answer.
     response = graph.trigger('recorder/flush')
     assert not response.success
     assert 'nothing comes on twist' in response.message

@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Hubs that slip beyond a torque, and hubs that bump against their stops."""
+"""Hubs that slip beyond a torque, moments of hubs, and hubs that bump against their stops."""
 
 import numpy as np
 
@@ -28,16 +28,8 @@ class SlipperClutch(LoosePropellers):
         return np.clip((self._hubs - self._blades) / self.TIME, least, most)
 
 
-class Bumping(Influence):
-    """
-    Propellers on hinges with stops: their disks tilt freely at first, and then bump and push.
-
-    Hardly a moment below a speed, and a steep one beyond it, for each rotor: that stops are met in
-    fast flight is in R. W. Prouty, Helicopter Performance, Stability, and Control, 1986.
-    """
-
-    FREE, SOFT = 1.2, 0.1       # m/s, at the speed of hover; of the moment, without a bump
-    STEEP = 2.2                 # of the moment, beyond
+class HubMoment(Influence):
+    """Moment of rotors that lean back in the wind, each by the velocity across it."""
 
     def __init__(self, size, params, rng):
         """Set the moment per velocity."""
@@ -49,7 +41,23 @@ class Bumping(Influence):
         """Return the moment of all rotors."""
         turn, hubs = np.maximum(now.speeds / self.hover, 0.2), now.hubs()
         across = np.hypot(hubs[:, 0], hubs[:, 1])
+        share = self.moment / len(turn) * self.per_velocity(across, turn)
+        return np.zeros(3), np.array([-share @ hubs[:, 1], share @ hubs[:, 0], 0.0])
+
+
+class Bumping(HubMoment):
+    """
+    Propellers on hinges with stops: their disks tilt freely at first, and then bump and push.
+
+    Hardly a moment below a speed, and a steep one beyond it, for each rotor: that stops are met in
+    fast flight is in R. W. Prouty, Helicopter Performance, Stability, and Control, 1986.
+    """
+
+    FREE, SOFT = 1.2, 0.1       # m/s, at the speed of hover; of the moment, without a bump
+    STEEP = 2.2                 # of the moment, beyond
+
+    def per_velocity(self, across, turn):
+        """Return the moments (n,) per velocity, of the usual one at the speed of hover."""
         # The tilt goes with the velocity over that of the blades.
         beyond = np.maximum(1.0 - self.FREE * turn / np.maximum(across, 1e-9), 0.0)
-        share = self.moment / len(turn) * turn * (self.SOFT + self.STEEP * beyond)
-        return np.zeros(3), np.array([-share @ hubs[:, 1], share @ hubs[:, 0], 0.0])
+        return turn * (self.SOFT + self.STEEP * beyond)

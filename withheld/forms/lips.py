@@ -4,9 +4,8 @@
 
 import numpy as np
 
-from withheld.constants import arm_length, hover_speed
 from withheld.forms.air import Drag
-from withheld.influence import Influence
+from withheld.forms.hubs import HubMoment
 
 
 class Retreating(Drag):
@@ -30,7 +29,7 @@ class Retreating(Drag):
         return forces.sum(axis=0), np.cross(now.places, forces).sum(axis=0)
 
 
-class Lipped(Influence):
+class Lipped(HubMoment):
     """
     Rotors in ducts, whose lip in front lifts more, until the flow parts from it in fast flight.
 
@@ -40,16 +39,6 @@ class Lipped(Influence):
 
     PEAKS, MORE = 1.6, 1.5      # m/s at the speed of hover, where it parts; of the moment, before
 
-    def __init__(self, size, params, rng):
-        """Set the moment per velocity."""
-        self.moment = 0.002 * size * params['mass'] * arm_length(params)
-        self.parameters = {'coefficient': self.moment}
-        self.hover = hover_speed(params)
-
-    def wrench(self, now):
-        """Return the moment of all rotors."""
-        turn, hubs = np.maximum(now.speeds / self.hover, 0.2), now.hubs()
-        across = np.hypot(hubs[:, 0], hubs[:, 1])
-        clings = 1.0 / (1.0 + (across / (self.PEAKS * turn)) ** 4)
-        share = self.moment / len(turn) * self.MORE * turn * clings
-        return np.zeros(3), np.array([-share @ hubs[:, 1], share @ hubs[:, 0], 0.0])
+    def per_velocity(self, across, turn):
+        """Return the moments (n,) per velocity, of the usual one at the speed of hover."""
+        return self.MORE * turn / (1.0 + (across / (self.PEAKS * turn)) ** 4)
