@@ -93,8 +93,6 @@ def judge(bench: Bench) -> Judgement:
     if set(model.effects) <= set(absent) and closes_half(model.gap, before, noise, rules):
         model = _fewest(bench, model, before, noise, present)
         absent = tuple(cause for cause in absent if cause not in model.effects)
-    needed = _instead_of_unknown(bench, model, absent, before, noise, weights)
-    absent = tuple(cause for cause in absent if cause not in needed)
     # What needs values that no vehicle has does the work of something else, which it stands for.
     untold = bench.untold(model)
     stand_ins = tuple(cause for cause in model.effects
@@ -240,32 +238,6 @@ def _fewest(bench: Bench, model: Model, before: dict, noise: dict, present: dict
             return max(fewer, key=lambda one: sum(present[cause.effect]
                                                   for cause in one.effects))
     return model
-
-
-def _instead_of_unknown(bench: Bench, model: Model, absent: tuple, before: dict, noise: dict,
-                        weights: dict) -> tuple:
-    """
-    Return the fewest of the improbable effects of a Model without which something is unknown.
-
-    Of those that contribute half of the gap of some group: `unknown` in their place would say less
-    than the flights do. None where something is unknown beside all of them, too.
-    Args: weights {candidate: Weight}.
-    """
-    out = tuple(cause for cause in model.effects if cause in absent)
-    great = [cause for cause in out if weights[cause].contribution >= bench.rules.half]
-
-    def unknown(removed: tuple) -> bool:
-        less = bench.absent(model, removed) if removed else model
-        return bool(unexplained(less.gap, before, noise, bool(less.effects), bench.rules))
-
-    if great and unknown(out):
-        for size in range(1, len(great) + 1):
-            found = [some for some in combinations(great, size)
-                     if not unknown(tuple(cause for cause in out if cause not in some))]
-            if found:
-                return max(found, key=lambda some: sum(weights[cause].contribution
-                                                       for cause in some))
-    return ()
 
 
 def clear(weights: list[Weight], distance: float, rules: Rules) -> bool:

@@ -47,7 +47,7 @@ def verdict_line(found: Diagnosis) -> str:
         return f'{titled(named[0].effect)}, {values_of(named[0])}, explains {share}{beside}'
     return f'{len(named)} effects explain {share}: ' + '; '.join(
         f'{titled(row.effect)}, {values_of(row)}, contribution {contribution_of(row)}'
-        + _doubted(row) for row in named) + beside
+        for row in named) + beside
 
 
 def _others(found: Diagnosis) -> str:
@@ -55,13 +55,9 @@ def _others(found: Diagnosis) -> str:
     rows = [row for row in found.ranking if row.effect in found.sure]
     likely = [row.effect for row in rows if row.probability >= RULES.present]
     certain = f'; certain: {_listed(likely)}' if likely else ''
-    return certain + ''.join(f'; {titled(row.effect)}{_doubted(row)}' for row in rows
-                             if row.effect not in likely)
-
-
-def _doubted(row: Ranked) -> str:
-    """Return the probability of a named effect that is less likely present than not."""
-    return f', uncertain (probability {row.probability:.2g})' * (row.probability < RULES.present)
+    return certain + ''.join(
+        f'; {titled(row.effect)}, uncertain (probability {row.probability:.2g})'
+        for row in rows if row.effect not in likely)
 
 
 def size_line(found: Diagnosis) -> str:

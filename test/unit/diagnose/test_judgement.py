@@ -15,7 +15,6 @@ from quad_ident_ros.diagnose.gap import Ends, gap
 from quad_ident_ros.diagnose.intake import take_in
 from quad_ident_ros.diagnose.judgement import (
     _fewest,
-    _instead_of_unknown,
     _weight,
     beyond,
     clear,
@@ -354,31 +353,6 @@ def test_uncertain_effects_are_named_as_few_as_close_half_of_the_gap(drag, thrus
     whole = model(('drag', 'thrust'), NOISE['velocity'])
     fewest = _fewest(bench, whole, of(velocity=0.64), NOISE, {'drag': 0.2, 'thrust': 0.4})
     assert [cause.effect for cause in fewest.effects] == expected
-
-
-@pytest.mark.parametrize(('whole', 'without', 'contributions', 'expected'), [
-    (NOISE['rate'], 0.2, (0.7, 0.6), ['inertia']),  # the only one whose absence leaves something
-    (NOISE['rate'], 0.2, (0.7, 0.3), []),           # it contributes less than half of any gap
-    (NOISE['rate'], NOISE['rate'], (0.7, 0.6), []),     # nothing is unknown without it
-    (0.19, 0.2, (0.7, 0.6), [])])                   # something is unknown beside it, too
-def test_improbable_effects_that_contribute_half_of_a_gap_are_named_in_place_of_unknown(
-        whole, without, contributions, expected):
-    drag, lag, inertia = (Candidate(name, name, (k,))
-                          for k, name in enumerate(('drag', 'lag', 'inertia')))
-
-    def model(effects):
-        return SimpleNamespace(effects=effects,
-                               gap=of(rate=whole if inertia in effects else without))
-
-    def absent(full, removed):
-        return model(tuple(cause for cause in full.effects if cause not in removed))
-
-    bench = SimpleNamespace(absent=absent, rules=RULES)
-    weights = {cause: Weight(share, 3.0, 1.0, {}, 2.0)
-               for cause, share in zip((lag, inertia), contributions, strict=True)}
-    named = _instead_of_unknown(bench, model((drag, lag, inertia)), (lag, inertia),
-                                of(rate=0.22), NOISE, weights)
-    assert [cause.effect for cause in named] == expected
 
 
 @pytest.mark.slow
