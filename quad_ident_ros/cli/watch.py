@@ -3,7 +3,10 @@
 """`quad_ident watch`: a live view of a vehicle on ROS 2 in the terminal."""
 
 import argparse
+import os
+import signal
 import sys
+import threading
 
 from quad_ident_ros.cli.options import asking_for_ros
 from quad_ident_ros.errors import InputError
@@ -62,5 +65,20 @@ def run(options):
                        "pip install 'quad_ident_ros[watch]'")
     if missing:
         raise InputError('; '.join(missing))
+    # Threads inherit the mask: the signal must reach the one that waits, not those of DDS.
+    signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGHUP})
     with Watching(options.namespace) as source:
+        threading.Thread(target=_end_at_hang_up, args=(source,), daemon=True).start()
         WatchApp(source).run()
+
+
+def _end_at_hang_up(source):
+    """
+    Wait for the end of the terminal; then end the process, with 0, as after q.
+
+    The kernel sends SIGCONT with SIGHUP, and Textual, which then starts its output again, waits
+    forever for the terminal that is gone: nothing of it may be waited for.
+    """
+    signal.sigwait({signal.SIGHUP})
+    source.close()
+    os._exit(0)

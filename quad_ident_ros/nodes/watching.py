@@ -86,6 +86,10 @@ class Watching:
 
     def __exit__(self, *_: object) -> None:
         """Stop listening."""
+        self.close()
+
+    def close(self) -> None:
+        """Stop listening and leave the graph."""
         self._stop.set()
         self._thread.join()
         self._executor.remove_node(self._node)

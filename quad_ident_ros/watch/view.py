@@ -73,7 +73,7 @@ class WatchApp(App[None]):
     def on_mount(self) -> None:
         """Begin to follow the state, and end at a signal as at a key."""
         loop = asyncio.get_running_loop()
-        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        for number in (signal.SIGINT, signal.SIGTERM):
             loop.add_signal_handler(number, self.exit)
         self.set_interval(LOOK, self.show)
         self.show()
