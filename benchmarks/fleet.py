@@ -2,9 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """A fleet on one worker and two, what a flight costs beside its diagnosis, and memory."""
 
+from concurrent.futures import ProcessPoolExecutor
+from functools import partial
+from multiprocessing import get_context
+import os
 from pathlib import Path
 import tempfile
 from time import perf_counter
+from unittest.mock import patch
 
 from benchmarks.tables import markdown, number, targets
 from quad_ident_ros.cluster import cluster
@@ -18,20 +23,24 @@ EFFICIENCY, OVERHEAD, GROWTH = 0.9, 0.02, 0.1   # share of the ideal, s of a fli
 VEHICLE = 'hummingbird'
 SECONDS = 10.0      # of a flight, at 100 Hz
 LIGHT = 40          # samples of a flight that is refused at once, as too short
+ONE_THREAD = {'OMP_NUM_THREADS': '1', 'OPENBLAS_NUM_THREADS': '1', 'MKL_NUM_THREADS': '1'}
+"""What Dask sets for its workers, too."""
 EARLY = 0.1         # share of the light flights after which memory should grow no more
 
 
 def run(size, bar):
     """Return the results as Markdown; size: a Size; bar: makes progress bars."""
     heavy, light = size.fleet_flights, size.light_flights
-    with tempfile.TemporaryDirectory() as folder, bar('fleet', 4) as advance:
+    with tempfile.TemporaryDirectory() as folder, bar('fleet', 6) as advance:
         top = Path(folder)
         make(top / 'heavy', heavy)
         make_light(top / 'light', light)
         advance()
-        times = {}
+        times, plain = {}, {}
         for workers in (1, 2):
             times[workers] = timed(top / 'heavy', top / f'out_{workers}', workers)[0]
+            advance()
+            plain[workers] = without_dask(top / 'heavy', top / f'plain_{workers}', workers)
             advance()
         wall, memory = timed(top / 'light', top / 'out_light', 2)
         from quad_ident_ros.fleet.store import read_table
@@ -40,7 +49,7 @@ def run(size, bar):
         stored = {name: bytes_in(top / name) / count for name, count in
                   (('out_1', heavy), ('out_light', light))}
         advance()
-    share = times[1] / (2.0 * times[2])
+    share, limit = (each[1] / (2.0 * each[2]) for each in (times, plain))
     overhead = wall / light
     growth = {who: after / before - 1.0 for who, (before, after) in memory.items()}
     goals = [
@@ -54,6 +63,9 @@ def run(size, bar):
     rows = [
         ('one worker: s for each flight', number(times[1] / heavy)),
         ('two workers: s for each flight', number(times[2] / heavy)),
+        ('the diagnoses alone, in one process without Dask: s for each', number(plain[1] / heavy)),
+        ('the same in two processes', number(plain[2] / heavy)),
+        ('share of the ideal that two processes without Dask reach', f'{100 * limit:.1f} %'),
         ('light flights: ms of each that are the work of a worker', number(1e3 * work)),
         ('kB on disk for each flight, in a group of its own', number(stored['out_1'] / 1e3)),
         ('kB on disk for each light flight', number(stored['out_light'] / 1e3)),
@@ -80,6 +92,32 @@ def timed(flights, out, workers):
         seconds = perf_counter() - begun
         after = resident(client)
     return seconds, {who: (seen[who], after[who]) for who in after}
+
+
+def without_dask(flights, out, processes):
+    """Return s of the diagnoses alone in processes that share nothing but the machine."""
+    from quad_ident_ros.fleet.grouping import groups_of
+    from quad_ident_ros.fleet.look import look
+    from quad_ident_ros.fleet.plan import planned
+    from quad_ident_ros.fleet.store import prepare
+    from quad_ident_ros.fleet.work import work
+    plan = planned([str(flights)], vehicle=VEHICLE)
+    looked = [look(one, plan.mapping) for one in plan.flights]
+    groups, _ = groups_of(zip(plan.flights, looked, strict=True), plan.nominal_of, plan.mapping,
+                          plan.rules)
+    prepare(out)
+    apart = get_context('spawn')
+    with patch.dict(os.environ, ONE_THREAD), ProcessPoolExecutor(
+            processes, apart, _warm_together, [apart.Barrier(processes)]) as pool:
+        pool.submit(int).result()
+        begun = perf_counter()
+        list(pool.map(partial(work, out=out), groups))
+        return perf_counter() - begun
+
+
+def _warm_together(everyone):
+    warm_up_diagnosis()
+    everyone.wait()
 
 
 def resident(client):

@@ -36,7 +36,10 @@ def verdict_line(found: Diagnosis) -> str:
     unknown = 'unknown' in found.verdict
     share = (f'{100 * max(found.gap.closed, 0.0):.0f} % of the velocity gap above the noise'
              if above_noise(found.gap) else 'part of the gap' if unknown else 'the gap')
-    share += ', and the rest is unknown' if unknown else ''
+    if unknown:
+        share += (', and the rest is unknown: another cause, or '
+                  f'{"this effect" if len(named) == 1 else "one of these effects"} by a law that '
+                  'is none of its forms')
     beside = doubts and f'; beside {"it" if len(named) == 1 else "them"}, {doubts}'
     if is_uncertain(found):
         best = '; '.join(f'{titled(row.effect)}, {values_of(row)}, probability '
