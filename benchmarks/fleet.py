@@ -109,7 +109,8 @@ def without_dask(flights, out, processes):
     apart = get_context('spawn')
     with patch.dict(os.environ, ONE_THREAD), ProcessPoolExecutor(
             processes, apart, _warm_together, [apart.Barrier(processes)]) as pool:
-        pool.submit(int).result()
+        for started in [pool.submit(int) for _ in range(processes)]:    # one process each
+            started.result()
         begun = perf_counter()
         list(pool.map(partial(work, out=out), groups))
         return perf_counter() - begun
