@@ -107,8 +107,8 @@ class Effect:
     Something that reality has and the nominal model does not, in one of several forms.
 
     forms: of Form, the first the usual one; excitation: what a flight must do to show it;
-    confused_with: names of effects that look alike; per_rotor: each parameter belongs to one
-    rotor, and one at a time is off; scale_group: one of those that scale the whole motion, of
+    confused_with: names of effects that look alike; per_rotor: each parameter of a form belongs to
+    one rotor, and one at a time is off; scale_group: one of those that scale the whole motion, of
     which only ratios show without a force sensor; ratio: the quotient that shows, of two effects
     with one of it only one is named; per_flight: how much each of its usual form's parameters
     usually differs from one flight to the next, empty where none does; needs_air: it is felt only
@@ -133,6 +133,15 @@ class Effect:
     def parameters(self) -> tuple[Parameter, ...]:
         """Parameters of all forms; their names differ."""
         return tuple(parameter for form in self.forms for parameter in form.parameters)
+
+    def parameters_of(self, form: Form, rotor_count: int) -> tuple[Parameter, ...]:
+        """Return the parameters of one of its forms that a vehicle with so many rotors has."""
+        return form.parameters[:rotor_count] if self.per_rotor else form.parameters
+
+    def parameters_for(self, rotor_count: int) -> tuple[Parameter, ...]:
+        """Return the parameters of all its forms that such a vehicle has."""
+        return tuple(parameter for form in self.forms
+                     for parameter in self.parameters_of(form, rotor_count))
 
     @property
     def actuator(self) -> Literal['delay', 'lag'] | None:

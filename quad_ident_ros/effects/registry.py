@@ -110,11 +110,8 @@ def vector(effects: Mapping[str, Mapping[str, float]], vehicle: Vehicle,
     low, high, _ = bounds(vehicle)
     schema.check_keys(where, effects, EFFECTS)
     for name, values in effects.items():
-        effect = EFFECTS[name]
-        known = [parameter.name for parameter in effect.parameters]
-        if effect.per_rotor:
-            known = known[:len(vehicle.rotors)]
-        schema.check_keys(f'{where}: {name}', values, known)
+        known = EFFECTS[name].parameters_for(len(vehicle.rotors))
+        schema.check_keys(f'{where}: {name}', values, [one.name for one in known])
         for key, value in values.items():
             place = PLACE[name, key]
             theta[place] = schema.number(f'{where}: {name}: {key}', value, low[place], high[place])

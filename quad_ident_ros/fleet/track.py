@@ -101,9 +101,9 @@ def track(tracking: Tracking, out: str | Path) -> None:
 
 
 def _parameters(effect: str, form: str, rotors: int) -> Sequence[Parameter]:
-    """Return the parameters of a form, of one with a parameter per rotor those of the rotors."""
-    parameters = next(one for one in EFFECTS[effect].forms if one.name == form).parameters
-    return parameters[:rotors] if EFFECTS[effect].per_rotor else parameters
+    """Return the parameters of a form that a vehicle with so many rotors has."""
+    known = EFFECTS[effect]
+    return known.parameters_of(next(one for one in known.forms if one.name == form), rotors)
 
 
 def _usual(effect: str, forms: Mapping[str, int]) -> str:

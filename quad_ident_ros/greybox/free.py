@@ -75,11 +75,12 @@ def _table(vehicle: Vehicle) -> Names:
         parts = [name for name in (key, *(f'{key}_{axis}' for axis in 'xyz')) if name in INDEX]
         table[key] = {name: INDEX[name] for name in parts}
         table |= {name: {name: INDEX[name]} for name in parts}
-    for effect in registry.EFFECTS:
-        places = columns_of([effect], len(vehicle.rotors))
+    count = len(vehicle.rotors)
+    for effect, known in registry.EFFECTS.items():
+        places = columns_of([effect], count)
         table[effect] = {f'{effect}.{registry.PARAMETERS[place - SPLIT][1].name}': place
                          for place in places}
         single = {f'{effect}.{parameter.name}': SPLIT + registry.PLACE[effect, parameter.name]
-                  for form in registry.EFFECTS[effect].forms[1:] for parameter in form.parameters}
+                  for form in known.forms[1:] for parameter in known.parameters_of(form, count)}
         table |= {name: {name: place} for name, place in (table[effect] | single).items()}
     return table

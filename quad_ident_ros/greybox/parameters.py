@@ -180,8 +180,7 @@ def _put_in_map(sizes: np.ndarray, vehicle: Vehicle) -> None:
 
 
 def columns_of(effects: Iterable[str], rotor_count: int) -> list[int]:
-    """Return the places (list of int) of the parameters of effects in the vector."""
-    return [SPLIT + k for name in effects
-            for k in range(registry.SLICES[name].start, registry.SLICES[name].stop)
-            if not (registry.EFFECTS[name].per_rotor
-                    and k - registry.SLICES[name].start >= rotor_count)]
+    """Return the places (list of int) in the vector of effects, in their usual forms."""
+    return [INDEX[f'{effect.name}.{parameter.name}']
+            for effect in (registry.EFFECTS[name] for name in effects)
+            for parameter in effect.parameters_of(effect.forms[0], rotor_count)]

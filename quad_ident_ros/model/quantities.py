@@ -32,8 +32,7 @@ def units(rotor_count: int) -> dict[str, str]:
     names = [name for key in UNITS for name in _names(key, key in TRIPLES)]
     names += [name for k in range(rotor_count) for name in _names(f'rotors[{k}].position', True)]
     for effect in EFFECTS.values():
-        parameters = effect.parameters[:rotor_count] if effect.per_rotor else effect.parameters
-        names += [f'{effect.name}.{each.name}' for each in parameters]
+        names += [f'{effect.name}.{each.name}' for each in effect.parameters_for(rotor_count)]
     return {name: unit_of(name) for name in names}
 
 
