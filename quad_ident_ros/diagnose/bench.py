@@ -11,7 +11,7 @@ from scipy.special import chdtrc, ndtri
 
 from quad_ident_ros.diagnose import gap as gaps
 from quad_ident_ros.diagnose import input_errors
-from quad_ident_ros.diagnose.candidates import Candidate
+from quad_ident_ros.diagnose.candidates import Candidate, usual_forms
 from quad_ident_ros.diagnose.evidence import key_of
 from quad_ident_ros.diagnose.file_errors import errors_by_file
 from quad_ident_ros.diagnose.fitted import (
@@ -188,9 +188,9 @@ class Bench:
         slow = self.selection.slow
         estimate = refitted(self.flights, self.vehicle, z, chosen, noise, fit.nuisances,
                             fit.starts, slopes, scatter, fixed[:-1], slow)
-        usual = {cause.effect: cause for cause in self.selection.posterior if cause.usual}
-        chosen, estimate = within_bounds(chosen, estimate, usual, self.flights, self.vehicle,
-                                         noise, self.rules, scatter, fixed[:-1], slow)
+        chosen, estimate = within_bounds(chosen, estimate, usual_forms(self.selection.posterior),
+                                         self.flights, self.vehicle, noise, self.rules, scatter,
+                                         fixed[:-1], slow)
         return self.model(chosen, estimate, fixed[-1])
 
     def left_out(self, model: Model) -> tuple:

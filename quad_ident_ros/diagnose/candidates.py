@@ -2,17 +2,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """What may be named as a cause, and which columns of the parameter vector that frees."""
 
-from collections.abc import Collection, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Iterable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.effects.base import Effect, Form
-from quad_ident_ros.effects.registry import EFFECTS, PLACES
+from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.greybox.flights import Flight, inertial
 from quad_ident_ros.greybox.nuisances import Nuisance, nuisances
-from quad_ident_ros.greybox.parameters import FACTORS, INDEX, SPLIT
+from quad_ident_ros.greybox.parameters import FACTORS, INDEX
 from quad_ident_ros.model.vehicle import Vehicle
 
 SCALES = tuple(INDEX[name] for name in (*FACTORS['thrust_coefficient'], 'mass_offset.mass'))
@@ -24,18 +24,19 @@ FORMS_SEEN = 10     # vehicles' worth of doubt, by which a form is rarer that a 
 @dataclass(frozen=True)
 class Candidate:
     """
-    An effect in one of its forms, or of one rotor, and its columns.
+    An effect in one of its forms, perhaps of one rotor, and its columns.
 
-    form: the name of the form; usual: whether it is that of the vehicle file, or else the one that
-    most know; plain: whether it has no more parameters than that; share: its part of the effect's
-    prior probability; nuisance: the greybox.nuisances.Nuisance that it is instead of an effect, or
-    None.
+    form: the name of the form; rotor: the number of the one that it is of, 0 where it is of all;
+    usual: whether the form is that of the vehicle file, or else the one that most know; plain:
+    whether it has no more parameters than that; share: its part of the effect's prior probability;
+    nuisance: the greybox.nuisances.Nuisance that it is instead of an effect, or None.
     """
 
     effect: str
     label: str
     columns: tuple[int, ...]
     form: str = ''
+    rotor: int = 0
     usual: bool = True
     plain: bool = True
     share: float = 1.0
@@ -64,21 +65,28 @@ def candidates(flights: list, vehicle: Vehicle, rules: Rules,
                  and not (inertial(flights) and form.needs_reference)
                  and not (_without_height(flights) and form.needs_height)]
         for form in forms:
-            place = PLACES[name, form.name]
-            columns = tuple(column for column in range(SPLIT + place.start, SPLIT + place.stop)
-                            if column not in known)
+            columns = tuple(
+                column for parameter in effect.parameters_of(form, len(vehicle.rotors))
+                if (column := INDEX[f'{name}.{parameter.name}']) not in known)
             if not columns:
                 continue
-            if effect.per_rotor:
-                found += [Candidate(name, f'{name} {j + 1}', columns[j:j + 1], form.name,
-                                    share=1.0 / len(vehicle.rotors))
-                          for j in range(len(vehicle.rotors))]
-            else:
-                found.append(Candidate(name, f'{name} {form.name}', columns, form.name,
-                                       form is forms[0],
-                                       len(form.parameters) <= len(forms[0].parameters),
-                                       _share(name, form, forms, rules)))
+            one = Candidate(name, f'{name} {form.name}', columns, form.name, 0, form is forms[0],
+                            len(form.parameters) <= len(forms[0].parameters),
+                            _share(name, form, forms, rules))
+            found += _of_each_rotor(one) if effect.per_rotor else [one]
     return tuple(found)
+
+
+def _of_each_rotor(form: Candidate) -> list[Candidate]:
+    """Return the Candidates of single rotors of a form that has a column for each."""
+    return [replace(form, label=f'{form.label} {j}', columns=(column,), rotor=j,
+                    share=form.share / len(form.columns))
+            for j, column in enumerate(form.columns, 1)]
+
+
+def usual_forms(causes: Iterable[Candidate]) -> dict[tuple[str, int], Candidate]:
+    """Return {(effect, rotor): the Candidate of its usual form}; rotor as of Candidate."""
+    return {(cause.effect, cause.rotor): cause for cause in causes if cause.usual}
 
 
 def _known_first(effect: Effect, vehicle: Vehicle) -> list[Form]:

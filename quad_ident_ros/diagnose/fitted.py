@@ -160,11 +160,12 @@ def within_bounds(chosen: tuple, fit: Estimate, usual: dict, flights: Sequence[F
     """
     Return a set and its Estimate with the usual form for each that wants to leave its bounds.
 
-    An effect whose usual form these flights cannot show is left out instead.
-    Args: usual {effect: candidate of its usual form}; the others as of refitted.
+    Of one rotor with that of the same rotor. An effect whose usual form these flights cannot show
+    is left out instead.
+    Args: usual: of candidates.usual_forms; the others as of refitted.
     """
     while True:
-        swaps = {cause: usual.get(cause.effect) for cause in effects_in(chosen)
+        swaps = {cause: usual.get((cause.effect, cause.rotor)) for cause in effects_in(chosen)
                  if out_of_bounds(cause, fit, vehicle, rules)}
         if not swaps:
             return chosen, fit

@@ -7,7 +7,7 @@ from collections.abc import Callable, Collection, Sequence
 import numpy as np
 from scipy.linalg import block_diag
 
-from quad_ident_ros.diagnose.candidates import Candidate, nuisance_candidates
+from quad_ident_ros.diagnose.candidates import Candidate, nuisance_candidates, usual_forms
 from quad_ident_ros.diagnose.discrepancy import AXES, log_likelihood, scales
 from quad_ident_ros.diagnose.evidence import beam, key_of, Quadratic
 from quad_ident_ros.diagnose.fitted import (
@@ -316,10 +316,9 @@ class _Search:
         The usual form replaces one that wants to leave its bounds.
         """
         best = self.simplest(list(self.judged))
-        usual = {cause.effect: cause for cause in self.all_causes if cause.usual}
-        chosen, fit = within_bounds(best.chosen, best.estimate, usual, self.flights,
-                                    self.vehicle, self.noise, self.rules, self.quadratic.scatter,
-                                    slow=self.slow)
+        chosen, fit = within_bounds(best.chosen, best.estimate, usual_forms(self.all_causes),
+                                    self.flights, self.vehicle, self.noise, self.rules,
+                                    self.quadratic.scatter, slow=self.slow)
         self.tried[chosen] = fit
         self.judge(chosen)
         self.tried = {key: one for key, one in self.tried.items() if not any(
