@@ -74,14 +74,15 @@ class Form:
     parameters: of Parameter; source: where the formula stands. What it changes, each a function
     or None (rows of the tables: model.situation; p (P, LANES) has its parameters from row k on):
     body(p, k, s): mass, inertia, centre of mass, before the flight; air(p, k, s): the wind;
-    thrust(p, k, s, rotors): factors on the rotors' thrust; wrench(p, k, s, rotors): forces of
-    the rotors, forces and moments on the body. actuator: 'delay' or 'lag', where its parameters
-    are those of the actuators; sensor: 'attitude' or 'rate' or 'block' (both) or 'heading', where
-    they are those of a sensor. acts_on: what it changes first, translation (forces), rotation
-    (moments and what is measured of the rate) or both; on_rotors: it acts on rotors, so that a
-    vehicle flown from U1..U4 needs some; needs_voltage: it acts only where the voltage is
-    recorded; needs_reference: it shows only against a position, a velocity or an attitude, not in
-    accelerometer and gyro alone; needs_height: it shows only where the height was measured.
+    thrust(p, k, s, rotors): factors on the rotors' thrust and reaction torque;
+    wrench(p, k, s, rotors): forces of the rotors, forces and moments on the body. actuator:
+    'delay' or 'lag', where its parameters are those of the actuators; sensor: 'attitude' or 'rate'
+    or 'block' (both) or 'heading', where they are those of a sensor. acts_on: what it changes
+    first, translation (forces), rotation (moments and what is measured of the rate) or both;
+    on_rotors: it acts on rotors, so that a vehicle flown from U1..U4 needs some; needs_voltage: it
+    acts only where the voltage is recorded; needs_reference: it shows only against a position, a
+    velocity or an attitude, not in accelerometer and gyro alone; needs_height: it shows only where
+    the height was measured.
     """
 
     name: str

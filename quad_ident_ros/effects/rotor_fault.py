@@ -3,10 +3,10 @@
 """One rotor gives less thrust than the others."""
 
 from quad_ident_ros.compiled import compiled
+from quad_ident_ros.effects import rotor_fault_torque
 from quad_ident_ros.effects.base import Effect, Form, Parameter, Table
+from quad_ident_ros.effects.rotor_fault_torque import MOST_ROTORS
 from quad_ident_ros.model.situation import GAIN
-
-MOST_ROTORS = 8
 
 
 @compiled(fused=True, inlined=True)
@@ -26,7 +26,7 @@ FORM = Form(
            'ICRA 2014',
     thrust=thrust)
 EFFECT = Effect(
-    name='rotor_fault', title='weak rotor', forms=(FORM,),
+    name='rotor_fault', title='weak rotor', forms=(FORM, rotor_fault_torque.FORM),
     excitation='any flight',
     confused_with=('com_offset',),
     per_rotor=True)

@@ -13,6 +13,7 @@ from quad_ident_ros.effects.registry import (
     mapping,
     NULL,
     PARAMETERS,
+    PLACE,
     SLICES,
     Values,
 )
@@ -37,11 +38,17 @@ def draw_reality(vehicle: Vehicle, seed: int) -> Vehicle:
 
 
 def strengthened(effect: Effect, vehicle: Vehicle, rng: np.random.Generator) -> np.ndarray:
-    """Return the parameter vector (P,) of an effect, some usual sizes of each parameter."""
+    """
+    Return the parameter vector (P,) of an effect, some usual sizes of each parameter.
+
+    It is in its usual form; one of single rotors is in any form, and of one of them.
+    """
     low, high, size = bounds(vehicle)
     places = np.arange(len(PARAMETERS))[SLICES[effect.name]]
     if effect.per_rotor:
-        places = np.array([rng.choice(places[:len(vehicle.rotors)])])
+        form = effect.forms[rng.integers(len(effect.forms))]
+        chosen = effect.parameters_of(form, len(vehicle.rotors))
+        places = np.array([PLACE[effect.name, chosen[rng.integers(len(chosen))].name]])
     theta = NULL.copy()
     for place in places:
         step = rng.uniform(*STRENGTHS) * size[place]

@@ -69,6 +69,7 @@ from quad_ident_ros.model.situation import (
     R21,
     R22,
     RADIUS,
+    REACTION,
     ROTOR_ROWS,
     RX,
     RY,
@@ -245,7 +246,7 @@ def _rotors(s: np.ndarray, rotors: np.ndarray, places: np.ndarray) -> None:
             rotors[j, UY, i] = s[AY, i] + s[TZ, i] * x - s[TX, i] * z
             rotors[j, UZ, i] = s[AZ, i] + s[TX, i] * y - s[TY, i] * x
             rotors[j, HEIGHT, i] = (s[PZ, i] + s[R20, i] * x + s[R21, i] * y + s[R22, i] * z)
-            rotors[j, GAIN, i] = 1.0
+            rotors[j, GAIN, i] = rotors[j, REACTION, i] = 1.0
             s[SPINS, i] += spin * rotors[j, SPEED, i]
 
 
@@ -270,7 +271,8 @@ def wrench(v: np.ndarray, places: np.ndarray, theta: np.ndarray, s: np.ndarray,
             s[FZ, i] += hz
             s[MX, i] += y * hz - z * hy
             s[MY, i] += z * hx - x * hz
-            torque = s[TORQUE, i] * v[6, i] * rotors[j, SPEED, i] ** 2
+            torque = (s[TORQUE, i] * v[6, i] * rotors[j, SPEED, i] ** 2
+                      * rotors[j, REACTION, i])
             s[MZ, i] += x * hy - y * hx + spin * torque
 
 

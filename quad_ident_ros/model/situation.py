@@ -37,6 +37,6 @@ GUIDE = 7
 GUIDE_BEGIN, GUIDE_END = 66, 66 + GUIDE
 ROWS = GUIDE_END + GUIDE
 
-# A rotor: speed; its velocity against the air, body; factor on its thrust; its force, body; its
-# place from the centre of mass, body; its height over ground.
-(SPEED, UX, UY, UZ, GAIN, HX, HY, HZ, RX, RY, RZ, HEIGHT, ROTOR_ROWS) = range(13)
+# A rotor: speed; its velocity against the air, body; factors on its thrust and on its reaction
+# torque; its force, body; its place from the centre of mass, body; its height over ground.
+(SPEED, UX, UY, UZ, GAIN, REACTION, HX, HY, HZ, RX, RY, RZ, HEIGHT, ROTOR_ROWS) = range(14)

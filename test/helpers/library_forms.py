@@ -84,7 +84,7 @@ def of_library(form, values, params, places, flight, hover):
     hubs = flight['air'][:, None] + np.cross(flight['rate'][:, None], places[None])
     for j in range(rotors):
         table[j, at.SPEED], table[j, at.HEIGHT] = flight['speeds'][:, j], flight['heights'][:, j]
-        table[j, at.UX:at.UZ + 1], table[j, at.GAIN] = hubs[:, j].T, 1.0
+        table[j, at.UX:at.UZ + 1], table[j, [at.GAIN, at.REACTION]] = hubs[:, j].T, 1.0
         table[j, at.RX:at.RZ + 1] = places[j][:, None]
     p = np.repeat(np.asarray(values, float)[:, None], COUNT, axis=1)
     if form.thrust is not None:
@@ -95,7 +95,10 @@ def of_library(form, values, params, places, flight, hover):
         form.wrench(p, 0, s, table)
     forces = np.transpose(table[:, at.HX:at.HZ + 1], (2, 0, 1)).copy()
     forces[:, :, 2] -= thrust
-    return summed(places, forces, s[at.FX:at.FZ + 1].T, s[at.MX:at.MZ + 1].T)
+    reaction = params['k_m'] * flight['speeds'] ** 2 * (table[:, at.REACTION].T - 1.0)
+    moment = s[at.MX:at.MZ + 1].T.copy()
+    moment[:, 2] += reaction @ params['rotor_directions']
+    return summed(places, forces, s[at.FX:at.FZ + 1].T, moment)
 
 
 def remainder(target, form, params, places, flight, hover):

@@ -9,7 +9,7 @@ import pytest
 
 from quad_ident_ros.diagnose import fitted
 from quad_ident_ros.diagnose.advice import at_bounds
-from quad_ident_ros.diagnose.candidates import Candidate
+from quad_ident_ros.diagnose.candidates import Candidate, candidates, usual_forms
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.flight.fly import fly_closed_loop
@@ -58,14 +58,28 @@ def test_an_effect_that_needs_values_no_vehicle_has_is_not_named():
                for finding in told.findings)
 
 
+def within_bounds(chosen, column, usual, monkeypatch):
+    """Return fitted.within_bounds of a set that wants to have a parameter beyond its bound."""
+    z = nominal(VEHICLE)
+    z[column] = limits(VEHICLE)[1, column]
+    fit = SimpleNamespace(z=z, nuisances=None, starts=None)
+    monkeypatch.setattr(fitted, 'refitted', lambda flights, vehicle, z, *_, **__:
+                        SimpleNamespace(z=z, nuisances=None, starts=None))
+    return fitted.within_bounds(chosen, fit, usual, [], VEHICLE, [], RULES)
+
+
+def test_a_form_of_a_rotor_at_its_bound_gives_way_to_the_usual_one_of_the_same_rotor(monkeypatch):
+    causes = candidates([], VEHICLE, RULES, ['rotor_fault'])
+    [both] = [one for one in causes if (one.form, one.rotor) == ('thrust_and_torque', 2)]
+    [column] = both.columns
+    chosen, again = within_bounds((both,), column, usual_forms(causes), monkeypatch)
+    assert [(one.form, one.rotor) for one in chosen] == [('thrust', 2)]
+    assert again.z[column] == 0.0
+
+
 def test_a_form_at_its_bound_is_left_out_where_its_usual_one_cannot_be_told(monkeypatch):
     """Where the weight determines the level of thrust, thrust_scale has its offset alone."""
     offset = INDEX['thrust_scale.offset']
     curve = Candidate('thrust_scale', 'thrust_scale offset', (offset,), 'offset', usual=False)
-    z = nominal(VEHICLE)
-    z[offset] = limits(VEHICLE)[1, offset]
-    fit = SimpleNamespace(z=z, nuisances=None, starts=None)
-    monkeypatch.setattr(fitted, 'refitted', lambda flights, vehicle, z, *_, **__:
-                        SimpleNamespace(z=z, nuisances=None, starts=None))
-    chosen, again = fitted.within_bounds((curve, INERTIA), fit, {}, [], VEHICLE, [], RULES)
+    chosen, again = within_bounds((curve, INERTIA), offset, {}, monkeypatch)
     assert chosen == (INERTIA,) and again.z[offset] == nominal(VEHICLE)[offset]

@@ -87,6 +87,23 @@ def test_a_weak_rotor_is_not_the_opposite_one_that_is_strong(loss, factor):
     check(diagnose(flown(truth), VEHICLE).as_data(), truth)
 
 
+@pytest.mark.parametrize('rotor', [2, 3])
+@pytest.mark.parametrize('parameter, form', [('loss', 'thrust'),
+                                             ('loss_both', 'thrust_and_torque')])
+def test_a_weak_rotor_is_named_with_what_it_loses(parameter, form, rotor):
+    """Where its torque is taken for the nominal one, the gap of the rate stays open."""
+    loss, name = 0.06, f'{parameter}_{rotor}'
+    truth = {'rotor_fault': {name: loss}}
+    data = diagnose(flown(truth), VEHICLE).as_data()
+    check(data, truth)
+    row = data['ranking'][0]
+    assert (row['effect'], row['form'], list(row['parameters'])) == ('rotor_fault', form, [name])
+    found = row['parameters'][name]
+    assert abs(found['value'] - loss) < 3.0 * found['std']
+    for group, gap in data['gap']['after'].items():
+        assert gap < 1.3 * data['gap']['noise'][group], group
+
+
 def test_the_truths_are_of_every_effect():
     assert set(TRUTHS) == set(EFFECTS)
 

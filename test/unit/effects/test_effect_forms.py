@@ -60,6 +60,7 @@ OTHERS = {
     ('blade_flapping', 'damped_hub'): {'hub_coefficient': 0.05, 'rate_damping': 0.002},
     ('blade_flapping', 'drag_centre'): {'arm': 0.05},
     ('blade_flapping', 'drag_point'): {'arm_x': 0.03, 'arm_y': -0.02, 'arm_z': 0.05},
+    ('rotor_fault', 'thrust_and_torque'): {'loss_both_2': 0.1},
     ('inflow', 'momentum'): {'through': 0.5},
     ('inflow', 'curve'): {'climb': 0.1, 'climb_square': 0.05, 'edgewise': 0.1,
                           'edgewise_square': 0.02},

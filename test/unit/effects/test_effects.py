@@ -4,7 +4,7 @@
 
 from dataclasses import replace
 
-from effect_flights import ALL, BARE, IRIS, roll, state, steps, VEHICLE
+from effect_flights import ALL, BARE, HEXA, IRIS, roll, state, steps, VEHICLE
 import numpy as np
 import pytest
 
@@ -18,8 +18,11 @@ from quad_ident_ros.effects.registry import (
     PLACES,
     vector,
 )
+from quad_ident_ros.errors import InputError
+from quad_ident_ros.greybox.free import columns_of_names
 from quad_ident_ros.greybox.parameters import INDEX, prior_sizes
 from quad_ident_ros.model.dynamics import course_of, predict
+from quad_ident_ros.model.quantities import units
 
 # Those of the format of a diagnosis.
 NAMES = ('motor_lag', 'actuation_delay', 'rotor_drag', 'body_drag', 'wind', 'inflow',
@@ -63,6 +66,20 @@ def test_the_vector_and_the_mapping_of_effects_are_one_another_s_inverse():
     theta = vector(ALL, VEHICLE)
     assert mapping(theta) == ALL and mapping(NULL) == {}
     assert (vector(mapping(theta), VEHICLE) == theta).all()
+
+
+def test_what_a_rotor_has_is_known_of_the_rotors_that_a_vehicle_has():
+    names = {kind: [f'rotor_fault.{kind}_{j}' for j in range(1, 7)] for kind in ('loss',
+                                                                                'loss_both')}
+    known = [name for name in units(6) if name.startswith('rotor_fault')]
+    assert known == names['loss'] + names['loss_both']
+    assert list(columns_of_names(['rotor_fault'], HEXA)) == names['loss']
+    assert list(columns_of_names(names['loss_both'], HEXA)) == names['loss_both']
+    for name in ('loss_7', 'loss_both_7'):
+        with pytest.raises(InputError, match=name):
+            columns_of_names([f'rotor_fault.{name}'], HEXA)
+        with pytest.raises(InputError, match=name):
+            vector({'rotor_fault': {name: 0.1}}, HEXA)
 
 
 # No strength, no effect.

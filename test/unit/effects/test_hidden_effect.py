@@ -25,6 +25,12 @@ def test_every_effect_is_drawn_and_one_at_a_time():
         assert len(effects) == 1 or set(effects) == {'wind', 'rotor_drag'}
 
 
+def test_a_weak_rotor_is_drawn_in_either_form():
+    names = {name.rpartition('_')[0] for effects in DRAWN.values()
+             for name in effects.get('rotor_fault', {})}
+    assert names == {'loss', 'loss_both'}
+
+
 def test_only_the_effects_differ_and_a_file_holds_them(tmp_path):
     for seed in (0, 1, 2):
         reality = draw_reality(NOMINAL, seed)

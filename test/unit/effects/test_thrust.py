@@ -67,6 +67,30 @@ def test_a_weak_rotor_lifts_less_and_turns_the_vehicle_to_its_side(rotor):
                                        abs=1e-6)
 
 
+@pytest.mark.parametrize('rotor', range(4))
+def test_a_rotor_that_turns_more_slowly_loses_its_torque_too(rotor):
+    loss = {'rotor_fault': {f'loss_both_{rotor + 1}': 0.2}}
+    found = roll(BARE, loss, held(BARE, HOVER, 1e-4, 1e-5), state())[-1] / 1e-4
+    lost = 0.2 * WEIGHT / 4
+    torque = lost * BARE.torque_coefficient / BARE.thrust_coefficient
+    (x, y, _), spin = BARE.rotors[rotor].position, BARE.rotors[rotor].spin
+    assert found[5] == pytest.approx(-lost / MASS, rel=1e-6)
+    assert found[10:] == pytest.approx(
+        np.divide([-y * lost, x * lost, -spin * torque], BARE.inertia), rel=1e-6, abs=1e-6)
+
+
+def test_a_loss_of_both_is_a_lower_speed():
+    """At any speed, and beside a loss of thrust alone, of which the torque is none."""
+    course = steps(HEXA)
+    start = state(velocity=(1, -2, 0.5), rate=(1, -2, 0.5))
+    slower = course.commands * np.sqrt([1, 1, 1, 1, 0.7, 1])
+    alone = {'loss_2': 0.1}
+    found, same = (roll(HEXA, {'rotor_fault': fault}, replace(course, commands=commands), start)
+                   for fault, commands in (({**alone, 'loss_both_5': 0.3}, course.commands),
+                                           (alone, slower)))
+    assert np.abs(found - same).max() < 1e-10
+
+
 def test_more_rotors_than_faults_are_no_fault():
     many = replace(HEXA, rotors=HEXA.rotors * 2)
     found = roll(many, {'rotor_gyro': {'rotor_inertia': 1e-3}}, held(many, hover_speed(many), 0.1),

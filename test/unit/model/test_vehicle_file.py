@@ -116,6 +116,7 @@ def test_effects_are_read_and_null_ones_are_none():
     # In units of the vehicle's mass, 0.65 kg.
     ({'mass_offset': {'mass': -0.5}}, 'mass: -0.5 is out of range, expected >= -0.39'),
     ({'rotor_fault': {'loss_5': 0.1}}, "effects: rotor_fault: 'loss_5' is not known here"),
+    ({'rotor_fault': {'loss_both_5': 0.1}}, "rotor_fault: 'loss_both_5' is not known here"),
     (['wind'], 'effects: expected `key: value` lines'), (None, 'effects: expected'),
 ], ids=str)
 def test_bad_effects_are_refused(effects, words):
