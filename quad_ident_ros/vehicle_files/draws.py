@@ -99,9 +99,9 @@ def table_of_draws(draws: Draws, on_progress: Callable[[float], None] = lambda s
     Return names (C,), units and values (N, C) of drawn vehicles for simulators that batch.
 
     What was drawn, and what a simulator has of it with the effects in it, which begins with
-    `with_effects.`: mass, place of the centre of mass in body axes, inertia about it, thrust
-    coefficient of each rotor and torque coefficient; a sag of the battery is left out of
-    it. on_progress is called with the share done.
+    `with_effects.`: mass, place of the centre of mass in body axes, inertia about it, thrust and
+    torque coefficient of each rotor; a sag of the battery is left out of it. on_progress is called
+    with the share done.
     """
     first: dict[str, float] = {}
     rows: list[list[float]] = []
@@ -126,7 +126,8 @@ def _with_effects(wanted: Wanted) -> dict[str, float]:
             **inertia,
             **{f'thrust_coefficient_{j}': wanted.thrust * (1.0 - float(loss))
                for j, loss in enumerate(wanted.losses, 1)},
-            'torque_coefficient': wanted.torque}
+            **{f'torque_coefficient_{j}': wanted.torque * (1.0 - float(loss))
+               for j, loss in enumerate(wanted.torque_losses, 1)}}
 
 
 def _fault(vehicle: Vehicle, real: bool) -> str:

@@ -12,7 +12,7 @@ from quad_ident_ros.effects.registry import titled, Values
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import Vehicle
 from quad_ident_ros.vehicle_files.reading import Draft, per_sum_of_speeds
-from quad_ident_ros.vehicle_files.weak_rotors import faults, losses_of, SAME
+from quad_ident_ros.vehicle_files.weak_rotors import faults_of, note_losses, SAME
 from quad_ident_ros.vehicle_files.xml_tree import Element
 
 _PLUGINS = ('multicopter-motor-model', 'multicoptermotormodel', 'gazebo_motor_model')
@@ -70,14 +70,14 @@ def take_motors(draft: Draft, plugins: Sequence[MotorPlugin], spinning: Sequence
     and a tag in it.
     """
     constants = [plugin.numbers['motorConstant'] for plugin in plugins]
-    losses = losses_of(constants, [plugin.numbers['motorConstant']
+    faults = faults_of(constants, [plugin.numbers['motorConstant']
                                    * plugin.numbers['momentConstant'] for plugin in plugins])
-    if any(losses):     # the strongest one stands for all
+    if faults:      # the strongest one stands for all
         best = plugins[constants.index(max(constants))]
         plugins = [replace(plugin, numbers={**plugin.numbers, **{
             tag: best.numbers[tag] for tag in ('motorConstant', 'momentConstant')}})
             for plugin in plugins]
-        draft.note('thrust lost by rotor', losses, '1', place(best.element, 'motorConstant'))
+        note_losses(draft, faults, len(plugins), place(best.element, 'motorConstant'))
     values = {tag: _common(plugins, tag) for tag in _NUMBERS}
     first = plugins[0].element
     constant, ratio = values['motorConstant'], values['momentConstant']
@@ -118,7 +118,7 @@ def take_motors(draft: Draft, plugins: Sequence[MotorPlugin], spinning: Sequence
                               {'rise': rise, 'fall': fall}),
                 'rotor_drag': {'coefficient': drag}, 'rotor_gyro': {'rotor_inertia': inertia},
                 **({'inflow': {'by_axial_speed': 1.0 / _NO_THRUST}} if classic else {}),
-                **faults(losses)}
+                **faults}
 
     draft.effects = effects
 

@@ -17,7 +17,7 @@ from quad_ident_ros.vehicle_files.mjcf_thrust import common, Push, pushes_of
 from quad_ident_ros.vehicle_files.reading import Draft, thrusts_as_commands, UNLIMITED
 from quad_ident_ros.vehicle_files.rotor_axes import check_axis
 from quad_ident_ros.vehicle_files.source import one_of, Source
-from quad_ident_ros.vehicle_files.weak_rotors import faults, losses_of
+from quad_ident_ros.vehicle_files.weak_rotors import faults_of, note_losses
 from quad_ident_ros.vehicle_files.xml_tree import Element, root_of
 
 GRAVITY = (0.0, 0.0, -9.81)     # m/s^2, of MuJoCo
@@ -137,12 +137,13 @@ def _take_rotors(draft: Draft, model: Model, parts: Sequence[Part], pushes: Sequ
             draft.assumed.append(f'{push.element.place("gear")}: its moment across the thrust is '
                                  'left out')
     forces = [float(np.linalg.norm(push.force)) for push in thrusts]
-    losses = losses_of(forces, [abs(torque) for torque in turning])
-    if any(losses):
-        draft.note('thrust lost by rotor', losses, '1', f'{where} gear')
-        forces = [max(forces)] * len(forces)
-    size = common(thrusts, [abs(torque) / force for torque, force in
-                            zip(turning, forces, strict=True)], 'torque over thrust')
+    torques = [abs(torque) for torque in turning]
+    faults = faults_of(forces, torques)
+    if faults:      # the strongest one stands for all
+        note_losses(draft, faults, len(thrusts), f'{where} gear')
+        forces, torques = ([max(each)] * len(thrusts) for each in (forces, torques))
+    size = common(thrusts, [torque / force for torque, force in
+                            zip(torques, forces, strict=True)], 'torque over thrust')
     spins = [int(math.copysign(1, torque)) if size > 0.0 else None for torque in turning]
     draft.take_rotors([push.place - whole.centre for push in thrusts], spins, where)
     if size > 0.0:
@@ -162,7 +163,7 @@ def _take_rotors(draft: Draft, model: Model, parts: Sequence[Part], pushes: Sequ
     if delay > 0.0:
         draft.note('delay of the controls', delay, 's', f'{where} delay')
     draft.effects = lambda _: {'motor_lag': {'time_constant': lag},
-                               'actuation_delay': {'delay': delay}, **faults(losses)}
+                               'actuation_delay': {'delay': delay}, **faults}
 
 
 def _lines_of(thrusts: Sequence[Push]) -> str:

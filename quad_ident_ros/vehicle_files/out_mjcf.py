@@ -27,10 +27,12 @@ from quad_ident_ros.vehicle_files.out_body import body_for, MOMENTS, PRODUCTS
 from quad_ident_ros.vehicle_files.reading import Draft
 from quad_ident_ros.vehicle_files.target import Code, Target
 from quad_ident_ros.vehicle_files.ways import BODY, LAGS, why_not
+from quad_ident_ros.vehicle_files.weak_rotors import losses_of
 from quad_ident_ros.vehicle_files.xml_tree import Element
 
 GENERAL = {'gainprm': '1', 'gaintype': 'fixed', 'biastype': 'none'}
 """What a <motor> is as a <general>."""
+APART = 'the torque of a rotor is a control of its own in the file'
 TURNS = 'quat', 'euler', 'axisangle', 'xyaxes', 'zaxis'
 
 
@@ -99,24 +101,28 @@ def _write_thrusts(edited: EditedXml, base: Base, thrusts: list[Push]) -> None:
     wanted = base.wanted
     thrust, torque = (base.constant(key) for key in ('thrust_coefficient', 'torque_coefficient'))
     if thrust is None:
-        edited.lack(('thrust', 'losses', 'torque'), 'the file has no thrust of single rotors')
+        edited.lack(('thrust', 'losses', 'torque', 'torque_losses'),
+                    'the file has no thrust of single rotors')
         return
     if torque is None:
-        edited.lack(['torque'], 'the torque of a rotor is a control of its own in the file')
-    losses = wanted.losses
+        edited.lack(['torque'], APART)
+        edited.nearest['torque_losses'] = f'its loss of thrust; {APART}'
+    losses, torque_losses = wanted.losses, wanted.torque_losses
     if np.max(losses) >= 1.0:
-        losses = np.zeros(len(losses))
+        losses = torque_losses = np.zeros(len(losses))
         edited.lack(['losses'], 'a rotor without thrust is not a rotor; remove its actuator')
     moment = 1.0 if torque is None else wanted.torque / torque
-    for j, (push, loss) in enumerate(zip(thrusts, losses, strict=True), 1):
-        before = base.effect('rotor_fault', f'loss_{j}')
+    for push, loss, torque_loss, before, torque_before in zip(
+            thrusts, losses, torque_losses, *losses_of(base.effects, len(thrusts)), strict=True):
         force = wanted.thrust * (1.0 - loss) / (thrust * (1.0 - before))
+        turning = moment * (1.0 - torque_loss) / (1.0 - torque_before)
         words = push.element.get('gear', '1').split()
         stated = push.element.numbers('gear', len(words), (1.0,))
-        factors = np.array([force] * 3 + [moment] * 3)[:len(words)]
+        factors = np.array([force] * 3 + [turning] * 3)[:len(words)]
         sources = {wanted.sources[key] for key, changed in (
             ('thrust', differs(thrust, wanted.thrust)), ('losses', differs(before, loss, 1.0)),
-            ('torque', moment != 1.0)) if changed}
+            ('torque', moment != 1.0),
+            ('torque_losses', differs(torque_before, torque_loss, 1.0))) if changed}
         edited.attribute(push.element, 'gear', stated * factors, '1 or m',
                          ', '.join(sorted(sources)), usual=(1.0,))
 
@@ -251,4 +257,5 @@ def _principal(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 TARGET = Target('mjcf', ('.xml', '.mjcf'),
-                frozenset((*BODY, *LAGS, 'thrust', 'losses', 'torque', 'delay')), write, new, code)
+                frozenset((*BODY, *LAGS, 'thrust', 'losses', 'torque', 'torque_losses', 'delay')),
+                write, new, code)

@@ -11,16 +11,17 @@ from quad_ident_ros.vehicle_files.edit_xml import EditedXml
 from quad_ident_ros.vehicle_files.gz_motors import MotorPlugin
 from quad_ident_ros.vehicle_files.out_base import Base
 from quad_ident_ros.vehicle_files.ways import Keys, LAGS
+from quad_ident_ros.vehicle_files.weak_rotors import losses_of
 
-HOLDS: Keys = ('thrust', 'losses', 'torque', 'speed_max', *LAGS, 'rotor_drag')
+HOLDS: Keys = ('thrust', 'losses', 'torque', 'torque_losses', 'speed_max', *LAGS, 'rotor_drag')
 
 
 def write_motors(edited: EditedXml, base: Base, plugins: Sequence[MotorPlugin]) -> None:
     """Have motor plugins hold what is wanted."""
     wanted = base.wanted
-    losses = wanted.losses
+    losses, torque_losses = wanted.losses, wanted.torque_losses
     if np.max(losses) >= 1.0:
-        losses = np.zeros(len(losses))
+        losses = torque_losses = np.zeros(len(losses))
         edited.lack(['losses'], 'the plugin needs a motorConstant above 0; take it out')
     # Tag, value, unit, the key of Wanted that says what it comes from.
     rows = [('timeConstantUp', wanted.rise, 's', 'rise'),
@@ -33,10 +34,11 @@ def write_motors(edited: EditedXml, base: Base, plugins: Sequence[MotorPlugin]) 
         edited.lack(['speed_max'], 'the plugin needs a limit; that of the file stays')
     else:
         rows.append(('maxRotVelocity', wanted.speed_max, 'rad/s', 'speed_max'))
-    for j, (plugin, loss) in enumerate(zip(plugins, losses, strict=True), 1):
+    before, _ = losses_of(base.effects, len(plugins))
+    for plugin, loss, torque_loss, faulty in zip(plugins, losses, torque_losses,
+                                                 (before > 0.0) | (losses > 0.0), strict=True):
         constant = wanted.thrust * (1.0 - loss)
-        ratio = wanted.torque / constant
-        faulty = f'loss_{j}' in base.effects.get('rotor_fault', {}) or loss
+        ratio = wanted.torque * (1.0 - torque_loss) / constant
         more = f', {wanted.sources["losses"]}' if faulty else ''
         for tag, value, unit, key in (
                 ('motorConstant', constant, 'N/(rad/s)^2', 'thrust'),

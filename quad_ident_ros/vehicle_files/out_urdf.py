@@ -45,8 +45,8 @@ def write(base: Base) -> EditedXml:
     if plugins:
         write_motors(edited, base, plugins)
         return edited
-    edited.lack(('losses', *LAGS, 'rotor_drag'), 'a URDF without motor plugins of Gazebo has no '
-                'motors')
+    edited.lack(('losses', 'torque_losses', *LAGS, 'rotor_drag'),
+                'a URDF without motor plugins of Gazebo has no motors')
     if properties is None or not set(PROPS) <= links.keys():
         edited.lack(('thrust', 'torque', 'speed_max'), 'a URDF says nothing of thrust')
     else:

@@ -14,6 +14,7 @@ from quad_ident_ros.data.thrust_level import FACTORS
 from quad_ident_ros.effects.registry import Values
 from quad_ident_ros.model.vehicle import Vehicle
 from quad_ident_ros.vehicle_files.ways import forms_of, Key, way_of
+from quad_ident_ros.vehicle_files.weak_rotors import losses_of
 
 SQUARE = 2.0    # of the rotor speed: the nominal thrust
 
@@ -25,12 +26,12 @@ class Wanted:
 
     mass kg; centre (3,) m, of mass, from that of the file; inertia (3, 3) kg m^2 about the centre
     of mass; thrust N/(rad/s)^2, at hover, rad/s, and exponent: of the rotor speed that the thrust
-    goes with; losses (n,): share of the thrust that each rotor has lost; torque N m/(rad/s)^2;
-    speed_max rad/s; rise, fall s, time constants; rotor_drag kg/rad, force per speed of a rotor
-    and air velocity across its axis; linear_drag (3,) N/(m/s); body_drag (3,) kg/m; inflow:
-    kg/rad, thrust of a rotor lost per its speed and air velocity along its axis, and kg/m, won
-    per square of that across it; flapping kg m/rad, moment per speed of a rotor and air velocity;
-    wind (3,) m/s; delay of the commands, s.
+    goes with; torque N m/(rad/s)^2; losses, torque_losses (n,): shares of the thrust and of the
+    torque that each rotor has lost; speed_max rad/s; rise, fall s, time constants; rotor_drag
+    kg/rad, force per speed of a rotor and air velocity across its axis; linear_drag (3,) N/(m/s);
+    body_drag (3,) kg/m; inflow: kg/rad, thrust of a rotor lost per its speed and air velocity
+    along its axis, and kg/m, won per square of that across it; flapping kg m/rad, moment per speed
+    of a rotor and air velocity; wind (3,) m/s; delay of the commands, s.
     sources: what each comes from, by key.
     """
 
@@ -42,6 +43,7 @@ class Wanted:
     exponent: float
     losses: np.ndarray
     torque: float
+    torque_losses: np.ndarray
     speed_max: float
     rise: float
     fall: float
@@ -90,15 +92,15 @@ def wanted_of(vehicle: Vehicle, sag: float | None, holds: Collection[Key]) -> Wa
     linear, by_speed = _drags(vehicle, holds)
     body, inflow = effects.get('body_drag', {}), effects.get('inflow', {})
     shift, wind = effects.get('com_offset', {}), effects.get('wind', {})
-    fault, flaps = effects.get('rotor_fault', {}), effects.get('blade_flapping', {})
+    flaps = effects.get('blade_flapping', {})
+    losses, torque_losses = losses_of(effects, len(vehicle.rotors))
     return Wanted(
         mass=vehicle.mass + effects.get('mass_offset', {}).get('mass', 0.0),
         centre=np.array([shift.get(axis, 0.0) for axis in 'xyz']),
         inertia=replace(vehicle, inertia=tuple(moments), products=tuple(products)).inertia_matrix,
         thrust=factor * vehicle.thrust_coefficient, hover=vehicle.hover_speed,
-        exponent=exponent,
-        losses=np.array([fault.get(f'loss_{j + 1}', 0.0) for j in range(len(vehicle.rotors))]),
-        torque=vehicle.torque_coefficient, speed_max=vehicle.speed_max, rise=rise, fall=fall,
+        exponent=exponent, losses=losses, torque=vehicle.torque_coefficient,
+        torque_losses=torque_losses, speed_max=vehicle.speed_max, rise=rise, fall=fall,
         rotor_drag=float(by_speed[:2].mean()) / speeds, linear_drag=linear,
         body_drag=np.array([body.get(axis, 0.0) + body.get(kind, 0.0) for axis, kind in
                             zip('xyz', ('horizontal', 'horizontal', 'vertical'), strict=True)]),
@@ -139,8 +141,8 @@ def _sources(vehicle: Vehicle, sag: float | None, holds: Collection[Key]) -> dic
     names: dict[Key, list[str]] = {
         'mass': ['mass'], 'centre': [], 'inertia': ['inertia'], 'thrust': ['thrust_coefficient'],
         'torque': ['torque_coefficient'], 'speed_max': ['speed_max'], 'rise': [], 'fall': [],
-        'rotor_drag': [], 'exponent': [], 'losses': [], 'linear_drag': ['linear_drag'],
-        'body_drag': [], 'inflow': [], 'flapping': [], 'wind': [],
+        'rotor_drag': [], 'exponent': [], 'losses': [], 'torque_losses': [],
+        'linear_drag': ['linear_drag'], 'body_drag': [], 'inflow': [], 'flapping': [], 'wind': [],
         'delay': []}
     if any(vehicle.linear_drag) and 'linear_drag' not in holds:
         names['rotor_drag'].append('linear_drag')
@@ -152,7 +154,7 @@ def _sources(vehicle: Vehicle, sag: float | None, holds: Collection[Key]) -> dic
                     names[key].append(effect)
     names['centre'] = names['centre'] or names['mass']
     usual = {'rise': 'motor_lag', 'fall': 'motor_lag', 'rotor_drag': 'rotor_drag',
-             'exponent': 'thrust_scale', 'losses': 'rotor_fault', 'body_drag': 'body_drag',
-             'inflow': 'inflow', 'flapping': 'blade_flapping', 'wind': 'wind',
-             'delay': 'actuation_delay'}
+             'exponent': 'thrust_scale', 'losses': 'rotor_fault', 'torque_losses': 'rotor_fault',
+             'body_drag': 'body_drag', 'inflow': 'inflow', 'flapping': 'blade_flapping',
+             'wind': 'wind', 'delay': 'actuation_delay'}
     return {key: ', '.join(found) or f'no {usual[key]}' for key, found in names.items()}

@@ -11,9 +11,9 @@ from typing import Literal
 
 from quad_ident_ros.effects.registry import EFFECTS, FORMS, Values
 
-Key = Literal['mass', 'centre', 'inertia', 'thrust', 'exponent', 'losses', 'torque', 'speed_max',
-              'rise', 'fall', 'rotor_drag', 'linear_drag', 'body_drag', 'inflow', 'flapping',
-              'wind', 'delay']
+Key = Literal['mass', 'centre', 'inertia', 'thrust', 'exponent', 'losses', 'torque',
+              'torque_losses', 'speed_max', 'rise', 'fall', 'rotor_drag', 'linear_drag',
+              'body_drag', 'inflow', 'flapping', 'wind', 'delay']
 Keys = tuple[Key, ...]
 BODY: Keys = ('mass', 'centre', 'inertia')
 LAGS: Keys = ('rise', 'fall')
@@ -60,6 +60,7 @@ WAYS: dict[tuple[str, str], tuple[Way, ...]] = {
                                      'at hover'), _AT_HOVER),
     ('thrust_scale', 'curve'): (_AT_HOVER,),
     ('rotor_fault', 'thrust'): (Way(('losses',)),),
+    ('rotor_fault', 'thrust_and_torque'): (Way(('losses', 'torque_losses')),),
     ('mass_offset', 'at_centre'): (Way(('mass',), 'a part of the mass, which is the same '
                                        'motion'),),
     ('inertia_mismatch', 'factors'): (Way(('inertia',), 'a part of the inertia, which is the same '

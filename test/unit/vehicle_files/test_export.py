@@ -141,6 +141,37 @@ def test_what_a_diagnosis_knows_of_effects_becomes_standard_errors_of_the_number
             0.01 * ratio * np.sqrt(2 - 2 * tied), abs=1e-6 * ratio)
 
 
+def test_a_rotor_that_turns_more_slowly_is_one_number_of_gazebo():
+    """momentConstant is the ratio of its torque to its thrust, which both fall."""
+    source, vehicle = base('gazebo')
+    weak = replace(vehicle, effects={**vehicle.effects, 'rotor_fault': {'loss_both_3': 0.15}})
+    found = export(weak, 'gazebo', source)
+    assert [(change.new, change.source) for change in found.changes] == [
+        (pytest.approx(0.85 * vehicle.thrust_coefficient), 'thrust_coefficient, rotor_fault')]
+
+
+@pytest.mark.parametrize('to', ['gazebo', 'mujoco'])
+@pytest.mark.parametrize('form', ['loss', 'loss_both'])
+def test_a_rotor_that_is_lost_is_not_carried(to, form):
+    source, vehicle = base(to)
+    lost = replace(vehicle, effects={**vehicle.effects, 'rotor_fault': {f'{form}_3': 1.0}})
+    found = export(lost, to, source)
+    assert [fate.name for fate in found.fates.not_carried] == ['rotor_fault']
+    assert found.text == source.text
+
+
+def test_where_torques_are_controls_of_their_own_a_weak_rotor_loses_thrust_alone():
+    known = {'torque_over_thrust': 0.02, 'spins': list(mjcf.SIGNS)}
+    source = Source('quad.xml', mjcf.model(actuators=mjcf.APART))
+    vehicle = read_vehicle(source, known).vehicle
+    weak = replace(vehicle, effects={'rotor_fault': {'loss_both_2': 0.1}})
+    found = export(weak, 'mujoco', source)
+    [fate] = found.fates.nearest
+    assert fate.form == 'thrust_and_torque' and 'control of its own' in fate.reason
+    read = read_vehicle(replace(source, text=found.text), known).vehicle
+    assert read.effects == {'rotor_fault': {'loss_2': pytest.approx(0.1)}}
+
+
 def test_a_lag_that_the_vehicle_does_not_have_is_taken_out():
     source, vehicle = base('gazebo')
     found = export(replace(vehicle, effects={'rotor_gyro': vehicle.effects['rotor_gyro']}),

@@ -29,7 +29,7 @@ SETS = ({'rotor_drag': {'coefficient': 0.2}, 'body_drag': {'horizontal': 0.02, '
          'wind': {'x': 2.0, 'y': -1.0, 'z': 0.5},
          'inflow': {'axial': 0.3, 'translational': 0.01}, 'ground_effect': {'strength': 4.0},
          'blade_flapping': {'coefficient': 0.01}, 'thrust_scale': {'exponent': 2.2},
-         'rotor_fault': {'loss_2': 0.1}},
+         'rotor_fault': {'loss_2': 0.1, 'loss_both_3': 0.05}},
         {'rotor_drag': {'x': 0.1, 'y': 0.2, 'z': 0.05}, 'body_drag': {'x': 0.02, 'z': 0.01},
          'inflow': {'climb': 0.2, 'climb_square': 0.02, 'edgewise': -0.1,
                     'edgewise_square': 0.01},

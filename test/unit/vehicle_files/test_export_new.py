@@ -61,13 +61,16 @@ def test_effects_are_in_a_new_file_as_in_one_of_the_user(to):
 
 
 @pytest.mark.parametrize('to', ['gazebo', 'mujoco'])
-def test_a_weak_rotor_is_one_when_the_file_is_read_again(to):
+@pytest.mark.parametrize('fault', [
+    {'loss_3': 0.15}, {'loss_both_3': 0.15}, {'loss_1': 0.02, 'loss_both_4': 0.1},
+    {'loss_2': 0.1, 'loss_both_2': 0.2, 'loss_both_3': 0.05}], ids=str)
+def test_a_weak_rotor_is_one_when_the_file_is_read_again(to, fault):
     source, vehicle = base(to)
-    weak = replace(vehicle, effects={**vehicle.effects, 'rotor_fault': {'loss_3': 0.15}})
+    weak = replace(vehicle, effects={**vehicle.effects, 'rotor_fault': fault})
+    forms = {'thrust_and_torque' if 'both' in name else 'thrust' for name in fault}
     for file in (None, source):
         found = export(weak, to, file)
-        assert ('rotor_fault', 'thrust') in [(fate.name, fate.form)
-                                             for fate in found.fates.carried]
+        assert forms == {fate.form for fate in found.fates.carried if fate.name == 'rotor_fault'}
         read = again(source, found)
         assert_same(read, weak, rel=1e-9)
     # Mended, it is the file that it was.
@@ -77,7 +80,8 @@ def test_a_weak_rotor_is_one_when_the_file_is_read_again(to):
 
 def test_mujoco_itself_pushes_as_a_new_file_says():
     mujoco = pytest.importorskip('mujoco', reason='MuJoCo is not installed')
-    vehicle = replace(load_vehicle('hummingbird'), effects={'rotor_fault': {'loss_2': 0.2}})
+    vehicle = replace(load_vehicle('hummingbird'), effects={
+        'rotor_fault': {'loss_2': 0.2, 'loss_both_4': 0.1}})
     model = mujoco.MjModel.from_xml_string(export(vehicle, 'mujoco').text)
     data = mujoco.MjData(model)
     thrusts = np.array([1.0, 1.2, 1.4, 1.6])
@@ -86,11 +90,20 @@ def test_mujoco_itself_pushes_as_a_new_file_says():
     places = np.array([rotor.position for rotor in vehicle.rotors])
     spins = np.array([rotor.spin for rotor in vehicle.rotors])
     ratio = vehicle.torque_coefficient / vehicle.thrust_coefficient
-    weak = thrusts * [1.0, 0.8, 1.0, 1.0]
+    weak, turning = thrusts * [1.0, 0.8, 1.0, 0.9], thrusts * [1.0, 1.0, 1.0, 0.9]
     assert model.body_mass.sum() == pytest.approx(vehicle.mass)
     np.testing.assert_allclose(data.qfrc_actuator[2:], [
-        weak.sum(), places[:, 1] @ weak, -places[:, 0] @ weak, ratio * spins @ thrusts],
+        weak.sum(), places[:, 1] @ weak, -places[:, 0] @ weak, ratio * spins @ turning],
         rtol=1e-9, atol=1e-12)
+
+
+def test_a_new_urdf_has_weak_rotors_in_its_motor_plugins_and_another_urdf_none():
+    source, vehicle = base('urdf')
+    fault = {'loss_2': 0.1, 'loss_both_3': 0.2}
+    weak = replace(vehicle, effects={'rotor_fault': fault})
+    assert again(source, export(weak, 'urdf')).effects['rotor_fault'] == pytest.approx(fault)
+    fates = export(weak, 'urdf', source).fates
+    assert [fate.form for fate in fates.not_carried] == ['thrust', 'thrust_and_torque']
 
 
 @pytest.mark.parametrize('with_base', [False, True])

@@ -111,6 +111,7 @@ def test_a_constant_that_flights_tell_by_an_effect_is_not_drawn_beside_it():
 def test_the_array_has_what_simulators_have_with_the_effects_in_it():
     vehicle = known(('mass_offset.mass', 'rotor_fault.loss_2', 'thrust_scale.factor'),
                     np.array([0.05, 0.1, 0.9]), correlation=0.0)
+    vehicle = with_values(vehicle, {'rotor_fault.loss_both_3': 0.2})
     draws = draw(vehicle, 20, seed=1)
     names, units, values = table_of_draws(draws)
     column = dict(zip(names, values.T, strict=True))
@@ -120,6 +121,11 @@ def test_the_array_has_what_simulators_have_with_the_effects_in_it():
     assert column['with_effects.thrust_coefficient_1'] == pytest.approx(thrust)
     assert column['with_effects.thrust_coefficient_2'] == pytest.approx(
         thrust * (1.0 - column['rotor_fault.loss_2']))
+    assert column['with_effects.thrust_coefficient_3'] == pytest.approx(0.8 * thrust)
+    for j, share in enumerate((1.0, 1.0, 0.8, 1.0), 1):
+        assert column[f'with_effects.torque_coefficient_{j}'] == pytest.approx(
+            share * BARE.torque_coefficient)
+    assert unit['with_effects.torque_coefficient_3'] == 'N m/(rad/s)^2'
     assert column['with_effects.inertia_zz'] == pytest.approx(BARE.inertia[2])
     assert unit['with_effects.inertia_xy'] == 'kg m^2' and unit['mass_offset.mass'] == 'kg'
     assert unit['with_effects.thrust_coefficient_4'] == 'N/(rad/s)^2'

@@ -30,6 +30,10 @@ def motors(gear='0 0 1 0 0 {}', extra='', tag='motor'):
     ) + '\n</actuator>'
 
 
+APART = motors('0 0 1 0 0 0').replace('</actuator>', '') + ''.join(
+    f'<motor site="thrust{k}" gear="0 0 0 0 0 1" name="t{k}"/>' for k in range(4)) + '</actuator>'
+
+
 def model(body=INERTIAL, actuators=None, before='<compiler autolimits="true"/>', name='quad'):
     return f"""<mujoco model="test">
 {before}
@@ -113,12 +117,9 @@ def test_a_model_with_a_total_thrust_has_no_rotors():
 
 
 def test_torques_that_are_controls_leave_spins_and_ratio_to_the_user():
-    apart = motors('0 0 1 0 0 0').replace('</actuator>', '') + ''.join(
-        f'<motor site="thrust{k}" gear="0 0 0 0 0 1" name="t{k}"/>' for k in range(4)
-    ) + '</actuator>'
-    found = reading(model(actuators=apart))
+    found = reading(model(actuators=APART))
     assert list(found.missing) == ['torque_coefficient', 'spins']
-    vehicle = read_vehicle(Source('quad.xml', model(actuators=apart)),
+    vehicle = read_vehicle(Source('quad.xml', model(actuators=APART)),
                            {'torque_over_thrust': 0.02, 'spins': list(SIGNS)}).vehicle
     assert vehicle == reading(model()).vehicle
 

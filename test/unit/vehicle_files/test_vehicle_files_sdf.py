@@ -276,7 +276,7 @@ def test_seven_rotors_are_doubted_and_tilted_ones_refused():
     ('<motorNumber>1<', '<motorNumber>0<', 'motorNumber 0 is that of the plugin in line'),
     ('<turningDirection>cw', '<turningDirection>right', "'right' is neither cw nor ccw"),
     ('<motorConstant>8e-06', '<motorConstant>0', 'motorConstant: 0 is impossible'),
-    ('<motorConstant>8e-06', '<motorConstant>9e-06', 'motorConstant is 8e-06, that of'),
+    ('<momentConstant>0.02', '<momentConstant>0.03', 'momentConstant is 0.02, that of'),
     ("<link name='rotor_0'>", "<link name='base_link'>", 'this name appears twice'),
     ('</sdf>', '', 'is not complete XML'),
     ('gz-sim-multicopter-motor-model-system', 'x', 'no model in it has a plugin'),
