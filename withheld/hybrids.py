@@ -73,11 +73,15 @@ def later(rows):
 
 
 def broken(rotor, loss):
-    """Return the Change to a rotor (1 to 4) that loses a share of its thrust."""
+    """
+    Return the Change to a rotor (1 to 4) that turns more slowly than it is told.
+
+    It loses the share of its thrust and of its reaction torque.
+    """
     def flight(columns, vehicle):
         name = f'cmd{rotor}'
         return columns | {name: columns[name] / np.sqrt(1.0 - loss)}
-    return Change({'rotor_fault': {f'loss_{rotor}': loss}}, flight=flight)
+    return Change({'rotor_fault': {f'loss_both_{rotor}': loss}}, flight=flight)
 
 
 def off_centre(x, y):

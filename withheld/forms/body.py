@@ -299,20 +299,6 @@ class Fault(Influence):
         return gain
 
 
-class Broken(Fault):
-    """Thrust and reaction torque are lost alike."""
-
-    comparable = True
-
-    def gain(self, now):
-        """Return the factors."""
-        return self.losing(now, lambda turn: 1.0)
-
-    def torque(self, now):
-        """Return the factors."""
-        return self.losing(now, lambda turn: 1.0)
-
-
 class Chipped(Fault):
     """A loss that grows with the square of the speed."""
 

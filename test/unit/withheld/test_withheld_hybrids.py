@@ -58,8 +58,10 @@ def test_commands_act_later_than_they_are_told(flown):
     assert len({len(values) for values in changed.values()}) == 1
 
 
-def test_one_rotor_loses_thrust(flown):
-    changed = hybrids.broken(3, 0.08).flight(flown, VEHICLE)
+def test_one_rotor_loses_thrust_and_with_it_torque(flown):
+    change = hybrids.broken(3, 0.08)
+    assert change.effects == {'rotor_fault': {'loss_both_3': 0.08}}
+    changed = change.flight(flown, VEHICLE)
     assert differing(flown, changed) == {'cmd3'}
     assert 0.92 * changed['cmd3'] ** 2 == pytest.approx(flown['cmd3'] ** 2)
 
