@@ -4,7 +4,7 @@
 
 from collections.abc import Iterable, Iterator, Sequence
 import csv
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import datetime
 import os
 from pathlib import Path
@@ -57,7 +57,8 @@ def listed(names: Iterable[str]) -> list[Listed]:
     """
     Return the flights that paths of flights, folders and manifests stand for, each path once.
 
-    Raises InputError, for what is not there, too.
+    What a manifest says of a flight goes before what its folders say. Raises InputError, for what
+    is not there, too.
     """
     found: dict[str, Listed] = {}
     for name in names:
@@ -71,11 +72,26 @@ def listed(names: Iterable[str]) -> list[Listed]:
         else:
             some = _in_folder(path) if path.is_dir() else _in_manifest(path)
         for one in some:
-            found.setdefault(os.path.realpath(one.path), one)
+            key = os.path.realpath(one.path)
+            found[key] = _both(found[key], one) if key in found else one
     if not found:
         raise InputError(f'{", ".join(names)}: there is no flight in it; name a folder of tables '
                          '(CSV, Parquet), bags or logs')
     return list(found.values())
+
+
+def _both(known: Listed, one: Listed) -> Listed:
+    """Return what is said of a flight that is named twice; InputError where manifests differ."""
+    if not one.place:
+        known, one = one, known
+    if not one.place:
+        return one
+    if known.place and replace(one, path=known.path, folder=known.folder) != known:
+        raise InputError(f'{one.place}: {one.path} is named in {known.place}, with other values; '
+                         'name each flight once')
+    return replace(one, vehicle=one.vehicle or known.vehicle, day=one.day or known.day,
+                   configuration=one.configuration or known.configuration,
+                   vehicle_file=one.vehicle_file or known.vehicle_file)
 
 
 def is_manifest(path: Path) -> bool:

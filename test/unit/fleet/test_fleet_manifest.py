@@ -171,6 +171,26 @@ def test_a_flight_that_is_named_twice_is_one(tmp_path):
     assert len(listed([str(path), str(tmp_path)])) == 1
 
 
+@pytest.mark.parametrize('order', [1, -1])
+def test_what_a_manifest_says_goes_before_what_folders_say(tmp_path, order):
+    path = write(tmp_path / 'seven' / 'long' / '2026-05-14' / 'a.csv')
+    quad = write(tmp_path / 'seven' / 'vehicle.yaml', 'a: 1')
+    manifest = write(tmp_path / 'm.csv', f'path,configuration,temperature_c\n{path},short,20\n')
+    one, = listed([str(manifest), str(tmp_path)][::order])
+    assert (one.vehicle, one.configuration, one.day) == ('seven', 'short', '2026-05-14')
+    assert one.covariates == {'temperature_c': 20.0} and one.vehicle_file == str(quad)
+
+
+def test_manifests_that_say_different_things_of_a_flight_are_refused(tmp_path):
+    write(tmp_path / 'a.csv')
+    names = [str(write(tmp_path / f'{name}.csv', f'path,vehicle\n{path},{vehicle}\n'))
+             for name, path, vehicle in (('m', 'a.csv', 'seven'), ('n', './a.csv', 'eight'),
+                                         ('same', '../' + tmp_path.name + '/a.csv', 'seven'))]
+    with pytest.raises(InputError, match=r'n\.csv, line 2: .*a\.csv is named in .*m\.csv, line 2'):
+        listed(names[:2])
+    assert [one.vehicle for one in listed(names[::2])] == ['seven']
+
+
 def test_a_file_of_the_system_without_a_size_is_not_read(tmp_path):
     """A link to /proc/kmsg was waited for; here a file of its kind that anybody may read."""
     for name, file in (('flight.csv', 'environ'), ('flight.ulg', 'maps'), ('notes', 'status')):
