@@ -8,6 +8,7 @@ import hashlib
 import os
 from pathlib import Path
 
+from quad_ident_ros import __version__
 from quad_ident_ros.data.content import files_in, sha256_of
 from quad_ident_ros.data.load import load_all
 from quad_ident_ros.data.mapping import Mapping
@@ -78,6 +79,14 @@ def content_unknown(path: str) -> str:
     return hashlib.sha256(os.fsencode(path)).hexdigest()
 
 
+def why_missing(path: str, flight: str) -> str:
+    """Return why a file whose content (flight) was seen cannot be read now, '' if it is there."""
+    if flight == content_unknown(path) or Path(path).exists():
+        return ''
+    return (f'{path}: it is not there any more, or not where this worker looks; share the folder '
+            'with all workers')
+
+
 def date_of_file(looked: Looked) -> datetime:
     """Return when a file was changed, which is the last that a date is taken from."""
     return datetime.fromtimestamp(looked.modified_ns // 1000 * 1e-6, timezone.utc)
@@ -88,12 +97,14 @@ class Looks:
     What earlier runs on a data set saw of files, so that those that stay are not read again.
 
     A file is the same where its path, size and time of change are. One that could not be read is
-    read again: a mapping or another version may do it.
+    read again: a mapping may do it. So are all by another version, which may find another date or
+    vehicle in them.
     """
 
     def __init__(self, out: str | Path) -> None:
         self._out = out
-        rows = sorted(read_table(out, 'files').to_pylist(), key=lambda row: row['was_read'])
+        rows = sorted((row for row in read_table(out, 'files').to_pylist()
+                       if row.pop('version') == __version__), key=lambda row: row['was_read'])
         self._known = {(row['path'], row['bytes'], row['modified_ns']): Looked(**row)
                        for row in rows if not row['reason']}
         self._new: list[Looked] = []
@@ -116,7 +127,7 @@ class Looks:
     def flush(self) -> None:
         """Write what was seen into the data set."""
         if self._new:
-            rows = [asdict(one) for one in self._new]
+            rows = [asdict(one) | {'version': __version__} for one in self._new]
             names = sorted(f'{one.path} {one.flight}' for one in self._new)
             key = hashlib.sha256(os.fsencode('\n'.join(names))).hexdigest()
             write_rows(self._out, 'files', key, rows)

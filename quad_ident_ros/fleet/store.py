@@ -35,7 +35,7 @@ TABLES = {
         *((f'gap_{when}_{name}', NUMBER) for when in ('before', 'after', 'noise')
           for name in UNITS),
         ('closed', NUMBER), ('findings', TEXTS), ('diagnosis', TEXT), ('version', TEXT),
-        ('rules', TEXT), ('seconds', NUMBER)]),
+        ('rules', TEXT), ('nominal', TEXT), ('seconds', NUMBER)]),
     'flights': pyarrow.schema([
         ('flight', TEXT), ('path', TEXT), *_WHOSE, ('duration_s', NUMBER), ('rate_hz', NUMBER),
         ('held_out', YES), ('status', TEXT), ('reason', TEXT), ('findings', TEXTS),
@@ -50,7 +50,8 @@ TABLES = {
         ('flight', TEXT), ('names', TEXTS), ('matrix', NUMBERS)]),
     'files': pyarrow.schema([
         ('path', TEXT), ('bytes', LONG), ('modified_ns', LONG), ('flight', TEXT),
-        ('hardware', TEXT), ('date', TIME), ('was_read', YES), ('reason', TEXT)]),
+        ('hardware', TEXT), ('date', TIME), ('was_read', YES), ('reason', TEXT),
+        ('version', TEXT)]),
 }
 """The columns of each table; docs/fleet.md says what they are."""
 

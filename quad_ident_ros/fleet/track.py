@@ -15,6 +15,7 @@ from quad_ident_ros.data.load import load_all
 from quad_ident_ros.effects.base import Parameter
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.fleet.grouping import Group, Member
+from quad_ident_ros.fleet.look import why_missing
 from quad_ident_ros.fleet.store import write_rows
 from quad_ident_ros.greybox.fit import Fit, fit
 from quad_ident_ros.greybox.taken_in import taken_in
@@ -79,7 +80,8 @@ def track(tracking: Tracking, out: str | Path) -> None:
     """
     Fit the effects of a Tracking to each flight of its group and write the rows.
 
-    A flight that cannot be fitted has none. Raises OSError where nothing can be written.
+    A flight that cannot be fitted has none. Raises LookupError where one is not there any more,
+    and OSError where nothing can be written.
     """
     group = tracking.group
     names = [f'{effect}.{parameter.name}' for effect, form in tracking.effects.items()
@@ -87,6 +89,8 @@ def track(tracking: Tracking, out: str | Path) -> None:
     parameters: list[dict[str, Any]] = []
     covariances: list[dict[str, Any]] = []
     for member in group.flights:
+        if why := why_missing(member.path, member.flight):
+            raise LookupError(why)      # an OSError would end the run
         try:
             records = [record for record, _ in taken_in(
                 load_all(member.path, group.mapping, group.nominal), group.nominal)]

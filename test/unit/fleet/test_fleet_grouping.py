@@ -16,6 +16,7 @@ from quad_ident_ros.fleet.manifest import Listed
 from quad_ident_ros.model.vehicle import load_vehicle
 
 pytest.importorskip('pyarrow', reason="pyarrow is not installed: pip install '.[fleet]'")
+from quad_ident_ros.fleet import look as look_module  # noqa: E402, I100
 from quad_ident_ros.fleet.grouping import groups_of  # noqa: E402, I100
 from quad_ident_ros.fleet.look import has_to_be_read, look, Looks  # noqa: E402, I100
 from quad_ident_ros.fleet.store import keys_of, write_rows  # noqa: E402, I100
@@ -100,6 +101,16 @@ def test_what_was_looked_at_is_known_until_it_changes(tmp_path):
         looks.add(look(one))
         looks.flush()
         assert Looks(tmp_path / 'out').known(one) == look(one)
+
+
+def test_what_another_version_looked_at_is_read_again(tmp_path, monkeypatch):
+    """It may find a date or a vehicle in logs in which this one finds none."""
+    one = flight(tmp_path, 'a.csv')
+    looks = Looks(tmp_path / 'out')
+    looks.add(look(one))
+    looks.flush()
+    monkeypatch.setattr(look_module, '__version__', '0')
+    assert Looks(tmp_path / 'out').known(one) is None
 
 
 def test_what_could_not_be_read_is_read_again(tmp_path):

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which effects are followed from flight to flight, and what becomes of flights that cannot be."""
 
+from pathlib import Path
+
 import pytest
 
 from quad_ident_ros.cluster import Done, TimeOver
@@ -70,6 +72,16 @@ def test_a_library_that_fails_on_a_flight_takes_no_other_with_it(group, tmp_path
     tracking = Tracking(group, {'rotor_drag': 'by_speed'})
     track.track(tracking, tmp_path)
     assert keys_of(tmp_path, 'covariances') == {tracking.key}
+
+
+def test_flights_that_are_not_where_a_worker_looks_are_fitted_by_the_next_run(group, tmp_path):
+    """The values of before would go, and none would come in their place."""
+    tracking = Tracking(group, {'rotor_drag': 'by_speed'})
+    path = Path(group.flights[0].path)
+    path.rename(tmp_path / 'away')
+    with pytest.raises(LookupError, match='a.csv: it is not there any more, or not where'):
+        track.track(tracking, tmp_path)
+    assert keys_of(tmp_path, 'covariances') == set()
 
 
 def test_a_group_whose_values_took_too_long_is_counted_and_keeps_those_of_before(
