@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a fleet shows that one flight cannot, as typed values and as data."""
 
+from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -14,7 +15,7 @@ from quad_ident_ros import __version__
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.fleet.events import Event, events
 from quad_ident_ros.fleet.history import histories, History
-from quad_ident_ros.fleet.series import series_of
+from quad_ident_ros.fleet.series import comparable, series_of
 from quad_ident_ros.fleet.sisters import Sister, Sisters, sisters
 from quad_ident_ros.fleet.store import read_table
 from quad_ident_ros.fleet.work import DIAGNOSED, FAILED, REFUSED, TIMEOUT
@@ -23,7 +24,7 @@ from quad_ident_ros.greybox.errors import UNITS
 SCHEMA = 'quad_ident/insight/1'
 MOST = 0.5          # share of vehicles from which on an effect is that of the model
 STAGES = 'before', 'after', 'noise'
-GROUPS = ('vehicle', 'configuration', 'status', 'verdict',
+GROUPS = ('group', 'nominal', 'vehicle', 'configuration', 'status', 'verdict',
           *(f'gap_{stage}_{name}' for stage in STAGES for name in UNITS))
 FLIGHTS = 'flight', 'path', 'vehicle', 'status', 'reason', 'covariates'
 """The columns that are looked at: whole diagnoses of a fleet take gigabytes."""
@@ -86,7 +87,9 @@ class Insight:
 
     status {of groups: how many}; refused, failed, suspect ((vehicle, file, reason), ...): flights
     whose log cannot be used, those that were not diagnosed for another reason or ran out of time,
-    and those that were but stand apart from the others of their vehicle; gap: of the whole fleet.
+    and those that were but stand apart from the others of their vehicle; apart ((vehicle, how
+    many), ...): flights whose values are not compared over time, because their nominal vehicle
+    differs from that of the last flight; gap: of the whole fleet.
     """
 
     vehicles: tuple[str, ...]
@@ -95,6 +98,7 @@ class Insight:
     refused: tuple[tuple[str, str, str], ...]
     failed: tuple[tuple[str, str, str], ...]
     suspect: tuple[tuple[str, str, str], ...]
+    apart: tuple[tuple[str, int], ...]
     events: tuple[Event, ...]
     odd: tuple[Odd, ...]
     present: tuple[Presence, ...]
@@ -111,6 +115,7 @@ class Insight:
             'refused': [list(one) for one in self.refused],
             'failed': [list(one) for one in self.failed],
             'suspect': [list(one) for one in self.suspect],
+            'apart': [list(one) for one in self.apart],
             'events': [asdict(one) | {'date': one.date.isoformat(), 'last_before':
                                       one.last_before and one.last_before.isoformat()}
                        for one in self.events],
@@ -130,6 +135,7 @@ def insight(out: str | Path, on_progress: Callable[[int, int], None] = lambda do
     effects, parameters = read_table(out, 'effects'), read_table(out, 'parameters')
     flights = read_table(out, 'flights', FLIGHTS)
     rows = read_table(out, 'groups', GROUPS).to_pylist()
+    parameters, apart = comparable(parameters, {row['group']: row['nominal'] for row in rows})
     found = histories(series_of(parameters, flights), on_progress)
     beside = sisters(found)
     named = {(row['vehicle'], effect) for row in rows for effect in row['verdict'] or ()}
@@ -139,7 +145,9 @@ def insight(out: str | Path, on_progress: Callable[[int, int], None] = lambda do
     flown = flights.to_pylist()
     return Insight(tuple(sorted({row['vehicle'] for row in rows})), flights.num_rows, status,
                    _unused(flown, (REFUSED,)), _unused(flown, (FAILED, TIMEOUT)),
-                   _suspect(flown, found), events(found, named), _odd(beside, named),
+                   _suspect([row for row in flown if row['flight'] not in apart], found),
+                   tuple(sorted(Counter(apart.values()).items())), events(found, named),
+                   _odd(beside, named),
                    presence(effects), _gap('', '', [row for row in rows
                                                     if row['status'] == DIAGNOSED]),
                    _gaps(rows), found, beside)

@@ -21,6 +21,27 @@ OUTCOME = '_end'     # of names of covariates that a flight makes: a weak rotor 
 Row = Mapping[str, Any]
 
 
+def comparable(parameters: pyarrow.Table, nominal: Mapping[str, str | None]
+               ) -> tuple[pyarrow.Table, dict[str, str]]:
+    """
+    Return the values that may stand beside one another, and {flight: vehicle} of the others.
+
+    Values are relative to the nominal vehicle: where it differs from that of the last flight they
+    are left out, or a new vehicle file would be a change. nominal: checksum of that of each group;
+    of an older data set it is not known, and taken for the same.
+    """
+    rows = parameters.select(['flight', 'group', 'vehicle', 'configuration', 'date']).to_pylist()
+    last: dict[tuple[str, str], tuple] = {}
+    for row in rows:
+        whose = row['vehicle'], row['configuration']
+        if against := nominal.get(row['group']):
+            last[whose] = max(last.get(whose, ()), (row['date'], against))
+    kept = [(nominal.get(row['group']) or '') in ('', last.get(
+        (row['vehicle'], row['configuration']), ('', ''))[1]) for row in rows]
+    return parameters.filter(pyarrow.array(kept, pyarrow.bool_())), {
+        row['flight']: row['vehicle'] for row, keeps in zip(rows, kept, strict=True) if not keeps}
+
+
 def series_of(parameters: pyarrow.Table, flights: pyarrow.Table) -> tuple[Series, ...]:
     """
     Return the Series of the tables `parameters` and `flights` of a data set.

@@ -15,9 +15,9 @@ from quad_ident_ros.fleet.history import Change, Drift
 from quad_ident_ros.fleet.insight import Insight, Odd, Presence
 from quad_ident_ros.report.sizes import handy, PER_CENT, sized, with_error
 
-WORSE, CHANGED, DRIFTS, DIFFERS, MODEL, FAILED, LOGS, SUSPECT, SMALL = (
+WORSE, CHANGED, DRIFTS, DIFFERS, MODEL, FAILED, LOGS, SUSPECT, APART, SMALL = (
     'gets worse', 'changed', 'drifts', 'differs from its sisters', 'the model is wrong',
-    'not diagnosed', 'logs refused', 'logs to check', 'small')
+    'not diagnosed', 'logs refused', 'logs to check', 'not compared', 'small')
 """Why something is worth a look, the most urgent first: a drift goes on."""
 NAMED = 5           # vehicles or parts that a sentence lists
 
@@ -37,11 +37,12 @@ def points(found: Insight) -> tuple[Point, ...]:
 
     What drifts away from the model, what changed, what drifts towards it, which vehicles are odd
     or have an effect that most have not, what the model does not have for any vehicle, which
-    flights were not diagnosed, which logs cannot be used, or look wrong; last what is sure but in
-    no verdict, for it hardly moves the vehicle.
+    flights were not diagnosed, which logs cannot be used, or look wrong, which values are relative
+    to another vehicle file; last what is sure but in no verdict, for it hardly moves the vehicle.
     """
     groups: dict[str, list[Point]] = {why: [] for why in (WORSE, CHANGED, DRIFTS, DIFFERS, MODEL,
-                                                          FAILED, LOGS, SUSPECT, SMALL)}
+                                                          FAILED, LOGS, SUSPECT, APART,
+                                                          SMALL)}
     for event in sorted(found.events, key=lambda one: -one.date.timestamp()):
         why = _why(event)
         groups[why if event.material else SMALL].append(
@@ -67,6 +68,7 @@ def points(found: Insight) -> tuple[Point, ...]:
     groups[FAILED] += _logs(found, FAILED)
     groups[LOGS] += _logs(found, LOGS)
     groups[SUSPECT] += _suspect(found)
+    groups[APART] += _apart(found)
     return tuple(point for some in groups.values() for point in some)
 
 
@@ -228,6 +230,18 @@ def _suspect(found: Insight) -> list[Point]:
                   f'{counted(len(found.suspect), "flight")} '
                   f'{"differs" if len(found.suspect) == 1 else "differ"} from all others of the '
                   f'same vehicle, and changed nothing: {names}; look at their logs')]
+
+
+def _apart(found: Insight) -> list[Point]:
+    """Return a Point for the flights whose values are relative to another nominal vehicle."""
+    if not found.apart:
+        return []
+    names = listed([f'{vehicle} {count}' for vehicle, count in found.apart])
+    count = sum(one for _, one in found.apart)
+    return [Point(APART, found.apart[0][0],
+                  f'{counted(count, "flight")} not compared over time, because their '
+                  f'nominal vehicle differs from that of the last flight: {names}; name them '
+                  'again with its vehicle file, or give them a configuration of their own')]
 
 
 def _signed(part: Part) -> str:

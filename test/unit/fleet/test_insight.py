@@ -19,7 +19,7 @@ from quad_ident_ros.report.data import finite
 pytest.importorskip('pyarrow', reason="pyarrow is not installed: pip install '.[fleet]'")
 from quad_ident_ros.fleet.history import histories  # noqa: E402, I100
 from quad_ident_ros.fleet.insight import insight  # noqa: E402, I100
-from quad_ident_ros.fleet.store import write_rows  # noqa: E402, I100
+from quad_ident_ros.fleet.store import keys_of, read_rows, write_rows  # noqa: E402, I100
 from quad_ident_ros.report.fleet import show_insight  # noqa: E402, I100
 from quad_ident_ros.report.fleet_charts import small_multiple  # noqa: E402, I100
 from quad_ident_ros.report.fleet_page import write  # noqa: E402, I100
@@ -269,3 +269,22 @@ def test_how_far_it_is_can_be_followed(tmp_path):
     told = []
     insight(tmp_path, lambda done, total: told.append((done, total)))
     assert told == [(number, 6) for number in range(6)]
+
+
+def test_a_new_vehicle_file_is_no_change_of_the_vehicle(tmp_path):
+    """Values are relative to the nominal vehicle: those of an older one are not compared."""
+    step = ('uav3', 'thrust_scale', 'factor', 10, 0.05)
+    data_set(tmp_path, steps=[step])
+    changed, = insight(tmp_path).events
+    assert (changed.vehicle, changed.number) == ('uav3', 11)
+    for key in keys_of(tmp_path, 'groups'):
+        vehicle, _, number = key.partition('-')
+        newer = vehicle == 'uav3' and int(number) >= 2
+        write_rows(tmp_path, 'groups', key, [
+            row | {'nominal': 'new' if newer else 'old'}
+            for row in read_rows(tmp_path, 'groups', key)])
+    found = insight(tmp_path)
+    assert found.events == () and found.apart == (('uav3', 10),)
+    assert not [one for one in found.suspect if one[0] == 'uav3']
+    point, = (one for one in points(found) if one.why == 'not compared')
+    assert '10 flights not compared over time' in point.text and 'uav3 10;' in point.text
