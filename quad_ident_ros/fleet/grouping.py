@@ -34,7 +34,9 @@ class Group:
     """
     Flights that are diagnosed together, the earliest first, and what with.
 
-    nominal: the vehicle that they are held against; key: of all that its result depends on.
+    nominal: the vehicle that they are held against, against: a checksum of it; key: of all that
+    its result depends on; older: keys of groups of a data set whose results stay where this one
+    fails.
     """
 
     vehicle: str
@@ -45,6 +47,8 @@ class Group:
     rules: Rules
     key: str
     version: str = __version__
+    older: tuple[str, ...] = ()
+    against: str = ''
 
     @property
     def date(self) -> datetime:
@@ -69,7 +73,7 @@ def groups_of(flights: Iterable[tuple[Listed, Looked]], nominal_of: Callable[[Li
             continue
         seen.add(looked.flight)
         vehicle = listed.vehicle or looked.hardware or listed.folder or UNNAMED
-        date = _date(listed, looked)
+        date = date_said(listed, looked) or date_of_file(looked)
         day = listed.group or (date_in(listed.day) or date).date().isoformat()
         place = vehicle, listed.configuration, day, listed.vehicle_file
         nominal.setdefault(place, nominal_of(listed))
@@ -81,7 +85,8 @@ def groups_of(flights: Iterable[tuple[Listed, Looked]], nominal_of: Callable[[Li
     for key, some in members.items():
         some.sort(key=lambda one: in_order(one.date, one.path))
         groups.append(Group(key[0], key[1], tuple(some), nominal[key], mapping, rules,
-                            _key(key, some, texts[id(nominal[key])], mapping, rules)))
+                            _key(key, some, texts[id(nominal[key])], mapping, rules),
+                            against=_checksum(texts[id(nominal[key])])))
     return groups, again
 
 
@@ -90,10 +95,9 @@ def rules_hash(rules: Rules) -> str:
     return _checksum(asdict(rules))
 
 
-def _date(listed: Listed, looked: Looked) -> datetime:
-    """Return when a flight was flown: by the manifest, the log, the names, or its file."""
-    return (listed.date or looked.date or date_in_path(listed.path)
-            or date_in(listed.day) or date_of_file(looked))
+def date_said(listed: Listed, looked: Looked) -> datetime | None:
+    """Return when a flight was flown by the manifest, the log or the names, None if none says."""
+    return listed.date or looked.date or date_in_path(listed.path) or date_in(listed.day)
 
 
 def _key(place: tuple[str, ...], members: list[Member], nominal: str, mapping: Mapping | None,

@@ -14,7 +14,7 @@ from quad_ident_ros.cluster import results, TimeOver, WorkerDied
 from quad_ident_ros.data.counted import counted
 from quad_ident_ros.data.mapping import Mapping
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.fleet.grouping import Group, groups_of
+from quad_ident_ros.fleet.grouping import date_said, Group, groups_of
 from quad_ident_ros.fleet.look import look, Looked, Looks, without_content
 from quad_ident_ros.fleet.manifest import ABOUT, Listed
 from quad_ident_ros.fleet.plan import Plan
@@ -27,6 +27,7 @@ from quad_ident_ros.fleet.superseded import (
     remove_group,
     remove_trackings,
     replaced_in,
+    staying,
     superseded_by,
 )
 from quad_ident_ros.fleet.track import track, tracked_effects, Tracking
@@ -86,7 +87,8 @@ class Summary:
     put into groups of its own; gave_way: why groups of this run have no result, because one of
     another run has some of their flights; kept: for each group whose results stay as they were, a
     flight of it that cannot be read any more; removed: flights that are in the data set no longer,
-    each with the reason.
+    each with the reason; stayed: why groups failed whose older results stay, for each one;
+    undated: paths of flights that are dated by the last change of their files.
     """
 
     flights: int
@@ -98,6 +100,8 @@ class Summary:
     gave_way: tuple[str, ...] = ()
     kept: tuple[str, ...] = ()
     removed: tuple[str, ...] = ()
+    stayed: tuple[str, ...] = ()
+    undated: tuple[str, ...] = ()
 
 
 Tell = Callable[[Progress], None]
@@ -144,20 +148,26 @@ def run_fleet(client: Any, plan: Plan, out: str | Path, *, time_limit: float = T
     groups = [group for group in groups if group.key not in kept]
     older = superseded_by(groups, out)
     going = gone_with(older, groups, out)
-    before, went = _diagnose_all(client, groups, out, older, time_limit, tell)
+    before, went, failed = _diagnose_all(client, groups, out, older, time_limit, tell)
     if before:
         follow_files(groups, out)
-    replaced = _check_written([group for group in groups if group.key not in went], out)
+    replaced = _check_written([group for group in groups if group.key not in {*went, *failed}],
+                              out)
     untracked = _track_all(client, groups, out, time_limit, tell)
     status = _statuses(out)
-    ended = [status.get(group.key) for group in groups]
+    tried = {key: outcome.status for key, (_, outcome) in failed.items()} | status
+    ended = [tried.get(group.key) for group in groups]
     removed = {path: why for key, flights in going.items() if key not in status
                for path, why in flights.items()}
     return Summary(sum(len(group.flights) for group in groups),
                    {name: ended.count(name) for name in (DIAGNOSED, REFUSED, FAILED, TIMEOUT)},
                    before, tuple(one.path for one in copies), untracked, len(replaced),
                    tuple(went.values()), tuple(kept.values()),
-                   tuple(f'{path} {why}' for path, why in removed.items()))
+                   tuple(f'{path} {why}' for path, why in removed.items()),
+                   tuple(f'{group.vehicle}, {group.date.date()}: {outcome.reason}'
+                         for group, outcome in failed.values()),
+                   tuple(one.path for one, seen in zip(plan.flights, looked, strict=True)
+                         if not seen.reason and date_said(one, seen) is None))
 
 
 def _looked(client: Any, flights: Sequence[Listed], mapping: Mapping | None, out: str | Path,
@@ -198,39 +208,48 @@ def _look(mapping: Mapping | None, some: Iterable[tuple[int, Listed]]
 
 def _diagnose_all(client: Any, groups: Sequence[Group], out: str | Path,
                   replaced: dict[str, list[str]], time_limit: float, tell: Tell
-                  ) -> tuple[int, dict[str, str]]:
+                  ) -> tuple[int, dict[str, str], dict[str, tuple[Group, Outcome]]]:
     """
     Diagnose the groups that are not done; each takes the place of those of `replaced`.
 
-    Returns how many were, and why some gave way to those of another run, {key: why}.
+    Returns how many were, why some gave way to those of another run, {key: why}, and which
+    failed and left older results in their place, {key: (group, outcome)}.
     """
     status = _statuses(out)
-    todo = [group for group in groups if status.get(group.key) not in DONE]
+    done_before = {key for key, one in status.items() if one in DONE}
+    older = staying(replaced, groups, out, done_before)
+    todo = [replace(group, older=older.get(group.key, ())) for group in groups
+            if group.key not in done_before]
     before = len(groups) - len(todo)
     _remove_replaced(out, replaced, status)
     # Each run in an order of its own: two on one data set seldom do the same group at once.
     random.shuffle(todo)
     account = _Account(tell, Progress(DIAGNOSING, len(groups), before, before))
     ended = {group.key: status.get(group.key, '') for group in groups}
+    failed: dict[str, tuple[Group, Outcome]] = {}
     for done in results(client, partial(_work, out), todo, time_limit, account.tick):
         group = done.item
         outcome = done.value
         if done.error is not None:
             outcome = outcome_of(group, out) or Outcome(
                 TIMEOUT if isinstance(done.error, TimeOver) else FAILED,
-                _reason(done.error, time_limit), time_limit)
+                _reason(done.error, time_limit),
+                time_limit if isinstance(done.error, TimeOver) else None)
             if outcome.status not in DONE:
                 write(group, out, outcome)
-        for key in replaced.get(group.key, ()):
+        if outcome.status not in DONE and group.older:
+            failed[group.key] = group, outcome
+        for key in set(replaced.get(group.key, ())).difference(
+                () if outcome.status in DONE else group.older):
             remove_group(out, key)
         ended[group.key] = outcome.status
         account.count_group(group, outcome)
     if not todo:
-        return before, {}
+        return before, {}, {}
     # A run beside this one may have ended with some of these flights meanwhile. What this one has
     # done is known, though a list of the files may not show it yet.
     return before, give_way(groups, out, {
-        key for key, one in (_statuses(out) | ended).items() if one in DONE})
+        key for key, one in (_statuses(out) | ended).items() if one in DONE}), failed
 
 
 def _check_written(groups: Sequence[Group], out: Path) -> set[str]:

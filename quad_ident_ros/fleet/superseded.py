@@ -12,8 +12,10 @@ from quad_ident_ros.fleet.grouping import Group
 from quad_ident_ros.fleet.look import content_unknown
 from quad_ident_ros.fleet.store import keys_of, plain, read_rows, read_table, remove, write_rows
 
-BY_GROUP = 'groups', 'flights', 'effects'
+BY_GROUP = 'groups', 'effects'
 """Tables whose files have the key of a group; that says whether it exists comes first."""
+FOUND_BY = 'flights'
+"""The same, by which a group is found: of one whose removal was cut short it is there still."""
 BY_TRACKING = 'covariances', 'parameters'
 """Tables whose files have a key that begins with that of a group."""
 
@@ -79,6 +81,22 @@ def gone_with(replaced: Mapping[str, Collection[str]], groups: Iterable[Group], 
             for keys in replaced.values() for key in keys}
 
 
+def staying(replaced: Mapping[str, Sequence[str]], groups: Iterable[Group], out: str | Path,
+            done: Collection[str]) -> dict[str, tuple[str, ...]]:
+    """
+    Return {key of a group: those that it replaces, but not where it fails}.
+
+    They are done, and all their flights are in it. replaced: as superseded_by gives it; done: keys
+    of groups that need not be tried again.
+    """
+    place = _places(groups)
+    found = {key: tuple(other for other in others if other in done and all(
+        _place_of(place, **row) in (key, None)
+        for row in read_rows(out, 'flights', other, ['flight', 'path'])))
+        for key, others in replaced.items() if key not in done}
+    return {key: others for key, others in found.items() if others}
+
+
 def follow_files(groups: Iterable[Group], out: str | Path) -> None:
     """Write where the flights of groups that were done before are now: files are moved."""
     now = {(group.key, flight.flight): plain(flight.path)
@@ -122,6 +140,8 @@ def give_way(groups: Sequence[Group], out: str | Path, done: Collection[str]
             newer = other in done and order(other) > order(key)
             if there(other) and not (newer and _has_all(out, other, planned[key])):
                 remove_group(out, other)
+        if key not in done and there(key):
+            _leave_out(out, key, [other for other in others if other in done and there(other)])
     for one in overlaps:
         if not there(one.key):
             continue
@@ -151,8 +171,7 @@ def _shared(groups: Iterable[Group], out: str | Path
             ) -> tuple[dict[str, list[str]], list[Overlap]]:
     """Return what groups take the place of, and the groups that they only overlap with."""
     planned = {group.key: group for group in groups}
-    place = {name: key for key, group in planned.items() for flight in group.flights
-             for name in (flight.flight, flight.path)}
+    place = _places(planned.values())
     rows: dict[str, list[tuple[str, str]]] = defaultdict(list)
     table = read_table(out, 'flights', ['group', 'flight', 'path'])
     for batch in table.to_batches(max_chunksize=10_000):
@@ -162,8 +181,7 @@ def _shared(groups: Iterable[Group], out: str | Path
     found: dict[str, list[str]] = defaultdict(list)
     overlaps = []
     for old, flights in rows.items():
-        new = [next((place[name] for name in (flight, path, *map(str, Path(path).parents))
-                     if name in place), None) for flight, path in flights]
+        new = [_place_of(place, *one) for one in flights]
         keys = [key for key in new if key]
         lost = next((path for (_, path), key in zip(flights, new, strict=True)
                      if key is None and Path(path).exists()), None)
@@ -173,6 +191,18 @@ def _shared(groups: Iterable[Group], out: str | Path
             # Of several, the last that is done: until then the old one stays.
             found[keys[-1]].append(old)
     return found, overlaps
+
+
+def _places(groups: Iterable[Group]) -> dict[str, str]:
+    """Return {content and path of a flight: key of the group that it is in}."""
+    return {name: group.key for group in groups for flight in group.flights
+            for name in (flight.flight, flight.path)}
+
+
+def _place_of(place: Mapping[str, str], flight: str, path: str) -> str | None:
+    """Return the key of the group that a flight of a data set is in now, or None."""
+    return next((place[name] for name in (flight, path, *map(str, Path(path).parents))
+                 if name in place), None)
 
 
 def _has_all(out: str | Path, key: str, group: Group) -> bool:
@@ -190,11 +220,26 @@ def _written(out: str | Path, key: str) -> float:
         return float('inf')
 
 
+def _leave_out(out: str | Path, key: str, others: Sequence[str]) -> None:
+    """Remove from a group that failed the flights that others have."""
+    has = {row['flight'] for other in others for row in read_rows(out, 'flights', other,
+                                                                  ['flight'])}
+    rows = read_rows(out, 'flights', key)
+    kept = [row for row in rows if row['flight'] not in has]
+    if not kept:
+        remove_group(out, key)
+    elif len(kept) < len(rows):
+        write_rows(out, 'flights', key, kept)
+        write_rows(out, 'groups', key, [row | {'flights': len(kept)}
+                                        for row in read_rows(out, 'groups', key)])
+
+
 def remove_group(out: str | Path, key: str) -> None:
     """Remove the rows of a group."""
     for table in BY_GROUP:
         remove(out, table, key)
     remove_trackings(out, {key: ''})
+    remove(out, FOUND_BY, key)
 
 
 def remove_trackings(out: str | Path, kept: dict[str, str]) -> None:

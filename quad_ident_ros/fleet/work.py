@@ -2,10 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """The diagnosis of one group of flights, in a worker: flights in, rows of the data set out."""
 
+from collections import Counter
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 import json
+import os
 from pathlib import Path
 from time import perf_counter
 from typing import Any
@@ -16,12 +18,13 @@ from quad_ident_ros import __version__
 from quad_ident_ros.data.load import load_all
 from quad_ident_ros.data.quality.fleet import vehicles
 from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.data.split import joined
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.diagnose.intake import take_in
 from quad_ident_ros.diagnose.result import Diagnosis
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.fleet.grouping import Group, Member, rules_hash
-from quad_ident_ros.fleet.look import content_unknown
+from quad_ident_ros.fleet.look import why_missing
 from quad_ident_ros.fleet.store import read_rows, write_rows
 from quad_ident_ros.memory import give_back
 from quad_ident_ros.report.data import finite
@@ -35,11 +38,15 @@ FIRST = 1.0     # s of a flight over which its first and last voltage are taken
 
 @dataclass(frozen=True)
 class Outcome:
-    """What came of a group: its status, the reason ('' where it was diagnosed), and s of work."""
+    """
+    What came of a group: its status, the reason ('' where it was diagnosed), and s of work.
+
+    Nobody knows the seconds where a worker ended, and they are None.
+    """
 
     status: str
     reason: str
-    seconds: float
+    seconds: float | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +74,7 @@ def work(group: Group, out: str | Path) -> Outcome:
     reads: list[_Read] = []
     found, reason = None, ''
     try:
-        reads = [_read(member, group) for member in group.flights]
+        reads = _told_apart([_read(member, group) for member in group.flights])
         reads, found, reason = _diagnosed(reads, group)
         status = REFUSED if found is None else DIAGNOSED
     except Exception as error:      # of a library: it takes no other group with it
@@ -90,11 +97,18 @@ def write(group: Group, out: str | Path, outcome: Outcome, reads: Sequence[_Read
     """
     Write the rows of a group; the row in `groups`, which says that it is done, is the last.
 
-    reads: what was read of its flights, if that is known; found: its Diagnosis, if there is one.
+    Of a group that failed only flights without an older result have rows. reads: what was read of
+    its flights, if that is known; found: its Diagnosis, if there is one.
     """
     whose = {'group': group.key, 'vehicle': group.vehicle, 'configuration': group.configuration}
     dated = whose | {'date': group.date}
     reads = reads or [_Read(member, ()) for member in group.flights]
+    if outcome.status not in DONE:
+        there = {row['flight'] for key in group.older
+                 for row in read_rows(out, 'flights', key, ['flight'])}
+        reads = [one for one in reads if one.member.flight not in there]
+        if not reads:
+            return
     used = [one for one in reads if not one.reason]
     write_rows(out, 'flights', group.key, [
         whose | _flight(one, outcome, found, len(used) > 1 and one is used[-1]) for one in reads])
@@ -107,9 +121,9 @@ def write(group: Group, out: str | Path, outcome: Outcome, reads: Sequence[_Read
             'form_errors': np.asarray(found.form_errors.get(one.effect, ())).tolist()}
             for one in found.ranking])
     write_rows(out, 'groups', group.key, [dated | {
-        'flights': len(group.flights), 'status': outcome.status, 'reason': outcome.reason,
-        'version': group.version, 'rules': rules_hash(group.rules), 'seconds': outcome.seconds,
-        'diagnosis': '', **(_verdict(found) if found else {})}])
+        'flights': len(reads), 'status': outcome.status, 'reason': outcome.reason,
+        'version': group.version, 'rules': rules_hash(group.rules), 'nominal': group.against,
+        'seconds': outcome.seconds, 'diagnosis': '', **(_verdict(found) if found else {})}])
 
 
 def one_line(error: Exception) -> str:
@@ -126,12 +140,40 @@ def _read(member: Member, group: Group) -> _Read:
                 'convert FILE NEW.csv --segment N`, into a folder of its vehicle')
         return _Read(member, tuple(records))
     except InputError as error:
-        if member.flight != content_unknown(member.path) and not Path(member.path).exists():
-            raise FileNotFoundError(f'{member.path}: it is not there any more, or not where this '
-                                    'worker looks; share the folder with all workers') from None
+        if why := why_missing(member.path, member.flight):
+            raise FileNotFoundError(why) from None
         return _Read(member, (), one_line(error))
     except Exception as error:      # of a library: it takes no other flight with it
         return _Read(member, (), f'{member.path}: {type(error).__name__} while it was read')
+
+
+def _told_apart(reads: Sequence[_Read]) -> list[_Read]:
+    """Return what was read, with names by which no two files of a group are taken for one."""
+    if len(reads) < 2:
+        return list(reads)
+    of_files = [{str(record.info.get('name')) for record in joined(one.records)} for one in reads]
+    counts = Counter(name for names in of_files for name in names)
+    top = os.path.commonpath([Path(one.member.path).parent for one in reads])
+    return [_renamed(one, top) if any(counts[name] > 1 for name in names) else one
+            for one, names in zip(reads, of_files, strict=True)]
+
+
+def _renamed(one: _Read, top: str) -> _Read:
+    """Return what was read, with the folder of the file below `top`, or its ending, in names."""
+    path = Path(one.member.path)
+    folder = os.path.relpath(path.parent, top)
+
+    def longer(name: object) -> str:
+        return f'{name}{path.suffix}' if folder == os.curdir else f'{folder}/{name}'
+
+    records = []
+    for record in one.records:
+        info = {**record.info, 'name': longer(record.info.get('name'))}
+        if 'whole' in info:
+            name, source = info['whole']
+            info['whole'] = [longer(name), source]
+        records.append(replace(record, info=info))
+    return replace(one, records=tuple(records))
 
 
 def _diagnosed(reads: list[_Read], group: Group) -> tuple[list[_Read], Diagnosis | None, str]:
@@ -171,7 +213,7 @@ def _refusal(one: _Read, group: Group) -> str:
 
 def _flight(one: _Read, outcome: Outcome, found: Diagnosis | None, last: bool) -> dict[str, Any]:
     """Return the columns of a flight that are not those of its group."""
-    names = {record.info.get('name') for record in one.records}
+    names = {record.info.get('name') for record in joined(one.records)}
     t = [record.t for record in one.records]
     return {
         'flight': one.member.flight, 'path': one.member.path, 'date': one.member.date,

@@ -95,7 +95,8 @@ class Reporter:
                      'flights': summary.flights, 'groups': groups, 'before': summary.before,
                      'copies': list(summary.copies), 'untracked': list(summary.untracked),
                      'replaced': summary.replaced, 'gave_way': list(summary.gave_way),
-                     'kept': list(summary.kept), 'removed': list(summary.removed)})
+                     'kept': list(summary.kept), 'removed': list(summary.removed),
+                     'stayed': list(summary.stayed), 'undated': list(summary.undated)})
         if self._path != '-':
             sys.stdout.write(summary_text(summary, self._out))
 
@@ -164,6 +165,11 @@ def summary_text(summary: Summary, out: str | Path) -> str:
                      f'{"; ".join(summary.removed[:3])}'
                      + (' ...' if len(summary.removed) > 3 else '')
                      + '; to keep a flight, give its file a name of its own and leave it there')
+    if summary.undated:
+        lines.append(f'{counted(len(summary.undated), "flight")} without a date in manifest, log '
+                     'or name, dated by the last change of the file, which a copy may not keep: '
+                     f'{", ".join(summary.undated[:3])}'
+                     + (' ...' if len(summary.undated) > 3 else ''))
     if summary.replaced:
         lines.append(f'{counted(summary.replaced, "group")} not counted: another run has put the '
                      'flights into groups of its own meanwhile')
@@ -173,6 +179,11 @@ def summary_text(summary: Summary, out: str | Path) -> str:
     if summary.untracked:
         lines.append(f'{counted(len(summary.untracked), "group")} without values of single '
                      f'flights: {summary.untracked[0]}; the same command tries again')
+    if summary.stayed:
+        count = len(summary.stayed)
+        lines.append(f'{counted(count, "group")} failed, and the older results of '
+                     f'{"its" if count == 1 else "their"} flights stay until there are new ones: '
+                     f'{"; ".join(summary.stayed[:3])}' + (' ...' if count > 3 else ''))
     if groups['failed'] or groups['timeout']:
         lines.append('the same command tries again what failed; the reasons are in the column '
                      f'reason of {out}/groups')

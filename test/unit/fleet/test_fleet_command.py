@@ -89,6 +89,23 @@ def test_the_end_says_which_flights_left_the_data_set():
         'give its file a name of its own and leave it there')
 
 
+def test_the_end_says_which_groups_failed_and_left_older_results():
+    groups = {'diagnosed': 7, 'refused': 0, 'failed': 0, 'timeout': 1}
+    text = summary_text(
+        Summary(12, groups, 7, (), stayed=('seven, 2026-05-14: it took long',)), 'out')
+    assert text.splitlines()[1] == (
+        '1 group failed, and the older results of its flights stay until there are new ones: '
+        'seven, 2026-05-14: it took long')
+
+
+def test_the_end_says_which_flights_nothing_dates_but_their_files():
+    groups = {'diagnosed': 7, 'refused': 0, 'failed': 0, 'timeout': 0}
+    text = summary_text(Summary(12, groups, 7, (), undated=tuple('abcd')), 'out')
+    assert text.splitlines()[1] == (
+        '4 flights without a date in manifest, log or name, dated by the last change of the file, '
+        'which a copy may not keep: a, b, c ...')
+
+
 def test_the_end_says_which_groups_have_no_values_of_single_flights():
     groups = {'diagnosed': 7, 'refused': 0, 'failed': 0, 'timeout': 0}
     assert summary_text(Summary(12, groups, 0, (), ('it took long',) * 2), 'out').splitlines() == [

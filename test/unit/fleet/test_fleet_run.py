@@ -3,20 +3,30 @@
 """A run over a fleet beside another one, and on workers elsewhere, with short diagnoses."""
 
 
+from contextlib import suppress
 import os
+import re
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from quad_ident_ros.cluster import Done
+from quad_ident_ros.data.csv import write_csv
+from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.diagnose.intake import take_in
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.flight.fly import fly_closed_loop
+from quad_ident_ros.flight.measure import SENSORS
+from quad_ident_ros.model.vehicle import load_vehicle
 
 pytest.importorskip('pyarrow', reason="pyarrow is not installed: pip install '.[fleet]'")
-from quad_ident_ros.fleet import run  # noqa: E402, I100
+from quad_ident_ros.fleet import run, store, superseded, work  # noqa: E402, I100
 from quad_ident_ros.fleet.grouping import Group, groups_of  # noqa: E402, I100
 from quad_ident_ros.fleet.look import look  # noqa: E402, I100
 from quad_ident_ros.fleet.plan import planned  # noqa: E402, I100
-from quad_ident_ros.fleet.store import read_table  # noqa: E402, I100
-from quad_ident_ros.fleet.superseded import give_way  # noqa: E402, I100
+from quad_ident_ros.fleet.store import read_table, write_rows  # noqa: E402, I100
+from quad_ident_ros.fleet.superseded import BY_TRACKING, give_way  # noqa: E402, I100
 from quad_ident_ros.fleet.work import Outcome, write  # noqa: E402, I100
 
 
@@ -49,7 +59,8 @@ def beside(tmp_path, monkeypatch):
         return run.run_fleet(None, planned([str(folder / f'{name}.csv') for name in names],
                                            vehicle=vehicle), tmp_path)
 
-    def runs(names, others, when='before', status='diagnosed', vehicle='hummingbird'):
+    def runs(names, others, when='before', status='diagnosed', vehicle='hummingbird',
+             own='diagnosed'):
         flown = []
 
         def other():
@@ -58,7 +69,8 @@ def beside(tmp_path, monkeypatch):
                 monkeypatch.setattr(run, 'results', lambda *some: results(*some, status=status))
                 fly(others, vehicle)
 
-        monkeypatch.setattr(run, 'results', lambda *some: results(*some, **{when: other}))
+        monkeypatch.setattr(run, 'results', lambda *some: results(
+            *some, status=own, **{when: other}))
         return fly(names)
 
     return runs
@@ -96,6 +108,12 @@ def test_a_flight_of_another_group_is_left_once_where_one_group_gives_way(tmp_pa
 def test_what_is_diagnosed_stays_before_what_ran_out_of_time(tmp_path, beside):
     beside('ab', 'bc', status='timeout')
     assert flights_in(tmp_path) == 'ab'
+
+
+def test_what_another_run_has_diagnosed_meanwhile_stays_where_this_fails(tmp_path, beside):
+    assert beside('ab', 'ab', vehicle='iris', own='timeout').replaced == 1
+    assert flights_in(tmp_path) == 'ab'
+    assert read_table(tmp_path, 'groups')['status'].to_pylist() == ['diagnosed']
 
 
 @pytest.mark.parametrize('when', ['before', 'after'])
@@ -300,6 +318,7 @@ def test_an_unexpected_error_fails_its_group_alone(flight, tmp_path, monkeypatch
     rows = {row['vehicle']: row for row in read_table('fleet', 'groups').to_pylist()}
     assert rows['seven']['status'] == 'failed'
     assert rows['seven']['reason'] == 'RuntimeError: a library ends'
+    assert rows['seven']['seconds'] is None      # not that of --time-limit
     assert rows['eight']['status'] == 'refused'
     caught(monkeypatch, lambda given, item: given(item))
     assert run.run_fleet(None, plan, 'fleet').groups['refused'] == 2
@@ -332,3 +351,135 @@ def test_results_that_are_written_somewhere_else_are_missed(flight, tmp_path, mo
     monkeypatch.setattr(run, 'SHOWN_AFTER', 0.0)
     with pytest.raises(InputError, match='results of 1 group are not in it'):
         run.run_fleet(None, planned(['flights'], vehicle='hummingbird'), 'fleet')
+
+
+def failing_in_the_worker(monkeypatch):
+    """Have an error that nobody expects end each diagnosis where it is made."""
+    def diagnosed(*_):
+        raise RuntimeError('a library\nends')
+
+    monkeypatch.setattr(work, '_diagnosed', diagnosed)
+    caught(monkeypatch, lambda given, item: given(item))
+
+
+def failing_elsewhere(monkeypatch):
+    """Have workers end before they write anything, as by --time-limit."""
+    caught(monkeypatch, unexpected(RuntimeError('a library\nends')))
+
+
+@pytest.fixture(params=[failing_in_the_worker, failing_elsewhere])
+def fleet(request, flight, monkeypatch):
+    """Return what runs over the flights with a nominal vehicle, in which all groups may fail."""
+    def ran(vehicle, fails=False):
+        with monkeypatch.context() as there:
+            if fails:
+                request.param(there)
+            else:
+                caught(there, lambda given, item: given(item))
+            return run.run_fleet(None, planned(['flights'], vehicle=vehicle), 'fleet')
+
+    return ran
+
+
+def test_a_group_that_fails_leaves_the_older_result_of_its_flights(fleet):
+    """As with a new vehicle file, rules or version, by which it runs out of time or memory."""
+    fleet('hummingbird')
+    before = {name: read_table('fleet', name).to_pylist() for name in ('groups', 'flights')}
+    for _ in range(2):
+        summary = fleet('iris', fails=True)
+        assert {name: read_table('fleet', name).to_pylist() for name in before} == before
+        assert summary.groups == {'diagnosed': 0, 'refused': 0, 'failed': 1, 'timeout': 0}
+        assert summary.stayed == ('seven, 2026-05-14: RuntimeError: a library ends',)
+        assert summary.replaced == 0 and summary.removed == ()
+    summary = fleet('iris')
+    assert summary.groups['refused'] == 1 and summary.stayed == ()
+    after, = read_table('fleet', 'groups')['group'].to_pylist()
+    assert after != before['groups'][0]['group']
+
+
+def test_a_flight_that_is_new_in_a_group_that_fails_is_recorded_beside_the_older_result(
+        fleet, flight):
+    fleet('hummingbird')
+    flight.with_name('b.csv').write_text('t,px\n0,2\n0.1,2\n', encoding='utf-8')
+    for _ in range(2):
+        summary = fleet('hummingbird', fails=True)
+        assert summary.groups['failed'] == 1 and len(summary.stayed) == 1
+        rows = {row['path'][-5:]: row for row in read_table('fleet', 'flights').to_pylist()}
+        assert {name: row['status'] for name, row in rows.items()} == {
+            'a.csv': 'refused', 'b.csv': 'failed'}
+        assert len(read_table('fleet', 'flights')) == 2
+        groups = read_table('fleet', 'groups').to_pylist()
+        assert sorted((row['status'], row['flights']) for row in groups) == [
+            ('failed', 1), ('refused', 1)]
+    assert fleet('hummingbird').groups['refused'] == 1
+    row, = read_table('fleet', 'groups').to_pylist()
+    assert (row['status'], row['flights']) == ('refused', 2)
+
+
+
+@pytest.mark.parametrize('fleet', [failing_elsewhere], indirect=True)
+@pytest.mark.parametrize('removed', range(6))
+def test_nothing_stays_of_a_group_whose_removal_was_cut_short(fleet, monkeypatch, removed):
+    """As by kill -9 after so many of its files."""
+    fleet('hummingbird')
+    old, = read_table('fleet', 'groups')['group'].to_pylist()
+    write_rows('fleet', 'effects', old, [])
+    for table in BY_TRACKING:
+        write_rows('fleet', table, f'{old}-some', [])
+    left = iter(range(removed))
+
+    def remove(*file):
+        if next(left, None) is None:
+            raise KeyboardInterrupt
+        store.remove(*file)
+
+    with monkeypatch.context() as there:
+        there.setattr(superseded, 'remove', remove)
+        with suppress(KeyboardInterrupt):
+            fleet('iris')
+    fleet('iris')
+    for table in ('groups', 'flights', 'effects', *BY_TRACKING):
+        assert not [key for key in store.keys_of('fleet', table) if key.startswith(old)]
+
+
+def test_flights_that_nothing_dates_but_their_files_are_named(flight, monkeypatch):
+    caught(monkeypatch, lambda given, item: given(item))
+    loose = flight.parents[1] / 'b.csv'
+    loose.write_text('t,px\n0,2\n0.1,2\n', encoding='utf-8')
+    for _ in range(2):
+        assert run.run_fleet(None, planned(['flights'], vehicle='hummingbird'), 'fleet'
+                             ).undated == (str(loose),)
+
+
+def test_findings_are_of_the_flight_whose_file_has_them(tmp_path, monkeypatch):
+    """Also of two files with one name, and of one that is split where its estimator was reset."""
+    nominal = load_vehicle('hummingbird')
+    jumps = {1: np.inf, 2: 4.5, 3: 5.5}
+    for number, at in jumps.items():
+        record = fly_closed_loop(nominal, {}, 'lissajous', duration=10.0, seed=number,
+                                 noise=SENSORS['mocap_imu'])
+        columns = dict(record.columns)
+        columns['px'] = columns['px'] + np.where(record.t > at, 20.0, 0.0)
+        write_csv(tmp_path / 'seven' / f'{number}' / 'flight.csv',
+                  FlightRecord(record.t, columns, {}))
+    manifest = tmp_path / 'm.csv'
+    manifest.write_text('path,vehicle,date\n' + ''.join(
+        f'seven/{number}/flight.csv,seven,2026-05-14T0{number}:00:00Z\n' for number in jumps))
+    plan = planned([str(manifest)], vehicle='hummingbird')
+    [group], _ = groups_of([(one, look(one)) for one in plan.flights], plan.nominal_of, None,
+                           plan.rules)
+
+    def quick(records, nominal, rules):
+        gap = SimpleNamespace(before={}, after={}, noise={}, closed=0.5)
+        return SimpleNamespace(verdict=(), minor=(), ranking=(), form_errors={}, gap=gap,
+                               findings=take_in(records, nominal, None, rules).findings,
+                               as_data=dict)
+
+    monkeypatch.setattr(work, 'diagnose', quick)
+    assert work.work(group, tmp_path / 'out').status == 'diagnosed'
+    rows = read_table(tmp_path / 'out', 'flights', ['path', 'findings']).to_pylist()
+    found = {row['path'].split('/')[-2]: re.findall(r'jumps by 20 m at t = ([\d.]+)',
+                                                      ' '.join(row['findings'])) for row in rows}
+    assert found == {'1': [], '2': ['4.50'], '3': ['5.50']}
+    of_group, = read_table(tmp_path / 'out', 'groups')['findings'].to_pylist()
+    assert any(one.startswith('2/flight (2 parts): ') for one in of_group)
