@@ -17,14 +17,20 @@ _NUMBER = re.compile(r'(\d+)')
 
 
 def date_of(text: str) -> datetime | None:
-    """Return the time (UTC where no zone is given) that ISO 8601 text is, or None."""
+    """
+    Return the time (UTC where no zone is given) that ISO 8601 text is, or None.
+
+    Neither is a time from before 2000 or after 2100: of milliseconds, 1712121400123, it would be
+    one of 1712.
+    """
     text = text.strip()
     try:    # Python 3.10 does not know the Z
         found = datetime.fromisoformat(text[:-1] + '+00:00' if text.endswith('Z') else text)
-        return (found.astimezone(timezone.utc) if found.tzinfo
-                else found.replace(tzinfo=timezone.utc))
+        found = (found.astimezone(timezone.utc) if found.tzinfo
+                 else found.replace(tzinfo=timezone.utc))
     except (ValueError, OverflowError):     # of a zone at the ends of the calendar
         return None
+    return found if int(found.timestamp()) * 10 ** 9 in DATED else None
 
 
 def date_in(name: str) -> datetime | None:

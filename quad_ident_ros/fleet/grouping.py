@@ -7,16 +7,18 @@ from dataclasses import asdict, dataclass
 from datetime import datetime
 import hashlib
 import json
+from pathlib import Path
 
 from quad_ident_ros import __version__
 from quad_ident_ros.data.mapping import Mapping
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.fleet.dates import date_in, date_in_path, in_order
 from quad_ident_ros.fleet.look import date_of_file, Looked
-from quad_ident_ros.fleet.manifest import Listed
+from quad_ident_ros.fleet.manifest import Listed, own_folder
 from quad_ident_ros.model.vehicle import Vehicle, vehicle_text
 
 UNNAMED = 'vehicle'     # where neither manifest, folders nor log say which it is
+SHOWN = 3           # folders that a message names
 
 
 @dataclass(frozen=True)
@@ -88,6 +90,25 @@ def groups_of(flights: Iterable[tuple[Listed, Looked]], nominal_of: Callable[[Li
                             _key(key, some, texts[id(nominal[key])], mapping, rules),
                             against=_checksum(texts[id(nominal[key])])))
     return groups, again
+
+
+def taken_together(flights: Iterable[tuple[Listed, Looked]]) -> tuple[str, ...]:
+    """
+    Return which folders are taken for those of one vehicle, though they may be of several.
+
+    They are below those that name vehicle and configuration, or have one name in several places.
+    """
+    found: dict[str, dict[str, None]] = {}
+    for listed, looked in flights:
+        if listed.deeper:
+            name = listed.vehicle + (f' ({listed.configuration})' if listed.configuration else '')
+            found.setdefault(name, {})[listed.deeper] = None
+        elif not (listed.vehicle or looked.hardware):
+            found.setdefault(listed.folder or UNNAMED, {})[
+                str(own_folder(Path(listed.path).parent))] = None
+    return tuple(f'{name}: {", ".join([*some][:SHOWN])}'
+                 + (f' and {len(some) - SHOWN} more' if len(some) > SHOWN else '')
+                 for name, some in found.items() if len(some) > 1)
 
 
 def rules_hash(rules: Rules) -> str:

@@ -38,7 +38,8 @@ class Listed:
 
     folder: the name of the folder that was searched, or of a flight that was named, which is the
     vehicle where nothing else says which; group: what is diagnosed together instead of a day;
-    vehicle_file: the nominal vehicle; place: file and line of a manifest.
+    vehicle_file: the nominal vehicle; deeper: a folder below those that name vehicle and
+    configuration; place: file and line of a manifest.
     """
 
     path: str
@@ -49,6 +50,7 @@ class Listed:
     group: str = ''
     vehicle_file: str = ''
     folder: str = ''
+    deeper: str = ''
     covariates: dict[str, float] = field(default_factory=dict)
     place: str = field(default='', compare=False)
 
@@ -68,7 +70,7 @@ def listed(names: Iterable[str]) -> list[Listed]:
                              'them or a manifest')
         if _is_bag(path) or path.is_file() and not is_manifest(path):
             some: Iterable[Listed] = [Listed(str(path), vehicle_file=_nominal_in(path.parent),
-                                             folder=_own_name(path.parent))]
+                                             folder=own_folder(path.parent).name)]
         else:
             some = _in_folder(path) if path.is_dir() else _in_manifest(path)
         for one in some:
@@ -150,8 +152,8 @@ def _entry(manifest: Path, line: int, names: Sequence[str], row: Sequence[str]) 
         raise InputError(f'{where}, column path: it is empty, or no name; name a flight')
     date = date_of(cells['date']) if cells.get('date') else None
     if cells.get('date') and date is None:
-        raise InputError(f'{where}, column date: {schema.shown(cells["date"])} is not a date; '
-                         'write 2026-05-14 or 2026-05-14T08:30:00Z')
+        raise InputError(f'{where}, column date: {schema.shown(cells["date"])} is not a date '
+                         'from 2000 on; write 2026-05-14 or 2026-05-14T08:30:00Z')
     covariates = {name: _covariate(where, name, cell) for name, cell in cells.items()
                   if name not in COLUMNS and cell}
     path = str(manifest.parent / cells['path'])
@@ -160,7 +162,7 @@ def _entry(manifest: Path, line: int, names: Sequence[str], row: Sequence[str]) 
     return Listed(path, cells.get('vehicle', ''), cells.get('configuration', ''), date, '',
                   cells.get('group', ''),
                   str(beside) if nominal and beside.is_file() else nominal,
-                  _own_name(Path(path).parent), covariates, where)
+                  own_folder(Path(path).parent).name, '', covariates, where)
 
 
 def _covariate(where: str, name: str, cell: str) -> float:
@@ -174,20 +176,26 @@ def _covariate(where: str, name: str, cell: str) -> float:
 
 def _in_folder(top: Path) -> Iterator[Listed]:
     """Yield the flights below a folder, which the folders between say more of."""
-    name = _own_name(top)
+    name = own_folder(top).name
     for path, nominal in _below(top, '', frozenset()):
         folders = path.relative_to(top).parts[:-1]
         if _is_of_open_bag(path):
             folders = folders[:-1]
         vehicle, configuration, day = whose(folders)
         yield Listed(str(path), vehicle, configuration, day=day, vehicle_file=nominal,
-                     folder=name)
+                     folder=name, deeper=_deeper(top, folders))
 
 
-def _own_name(folder: Path) -> str:
-    """Return the name of a folder, or of the next one above that is no day."""
+def _deeper(top: Path, folders: Sequence[str]) -> str:
+    """Return the folder below those that name vehicle and configuration, '' if there is none."""
+    third = [number for number, name in enumerate(folders, 1) if not is_day(name)][2:3]
+    return str(top.joinpath(*folders[:third[0]])) if third else ''
+
+
+def own_folder(folder: Path) -> Path:
+    """Return a folder, or the next one above whose name is no day."""
     whole = Path(os.path.abspath(folder))       # without a `..`, which is no name
-    return next(one.name for one in (whole, *whole.parents) if not is_day(one.name))
+    return next(one for one in (whole, *whole.parents) if not is_day(one.name))
 
 
 def _below(folder: Path, nominal: str, above: frozenset[str]) -> Iterator[tuple[Path, str]]:

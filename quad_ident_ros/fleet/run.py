@@ -14,7 +14,7 @@ from quad_ident_ros.cluster import results, TimeOver, WorkerDied
 from quad_ident_ros.data.counted import counted
 from quad_ident_ros.data.mapping import Mapping
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.fleet.grouping import date_said, Group, groups_of
+from quad_ident_ros.fleet.grouping import date_said, Group, groups_of, taken_together
 from quad_ident_ros.fleet.look import look, Looked, Looks, without_content
 from quad_ident_ros.fleet.manifest import ABOUT, Listed
 from quad_ident_ros.fleet.plan import Plan
@@ -88,7 +88,8 @@ class Summary:
     another run has some of their flights; kept: for each group whose results stay as they were, a
     flight of it that cannot be read any more; removed: flights that are in the data set no longer,
     each with the reason; stayed: why groups failed whose older results stay, for each one;
-    undated: paths of flights that are dated by the last change of their files.
+    undated: paths of flights that are dated by the last change of their files; together: folders
+    whose flights are taken for those of one vehicle by their names alone.
     """
 
     flights: int
@@ -102,6 +103,7 @@ class Summary:
     removed: tuple[str, ...] = ()
     stayed: tuple[str, ...] = ()
     undated: tuple[str, ...] = ()
+    together: tuple[str, ...] = ()
 
 
 Tell = Callable[[Progress], None]
@@ -167,7 +169,8 @@ def run_fleet(client: Any, plan: Plan, out: str | Path, *, time_limit: float = T
                    tuple(f'{group.vehicle}, {group.date.date()}: {outcome.reason}'
                          for group, outcome in failed.values()),
                    tuple(one.path for one, seen in zip(plan.flights, looked, strict=True)
-                         if not seen.reason and date_said(one, seen) is None))
+                         if not seen.reason and date_said(one, seen) is None),
+                   taken_together(zip(plan.flights, looked, strict=True)))
 
 
 def _looked(client: Any, flights: Sequence[Listed], mapping: Mapping | None, out: str | Path,

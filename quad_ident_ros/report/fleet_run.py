@@ -96,7 +96,8 @@ class Reporter:
                      'copies': list(summary.copies), 'untracked': list(summary.untracked),
                      'replaced': summary.replaced, 'gave_way': list(summary.gave_way),
                      'kept': list(summary.kept), 'removed': list(summary.removed),
-                     'stayed': list(summary.stayed), 'undated': list(summary.undated)})
+                     'stayed': list(summary.stayed), 'undated': list(summary.undated),
+                     'together': list(summary.together)})
         if self._path != '-':
             sys.stdout.write(summary_text(summary, self._out))
 
@@ -165,6 +166,12 @@ def summary_text(summary: Summary, out: str | Path) -> str:
                      f'{"; ".join(summary.removed[:3])}'
                      + (' ...' if len(summary.removed) > 3 else '')
                      + '; to keep a flight, give its file a name of its own and leave it there')
+    if summary.together:
+        lines.append('taken for flights of one vehicle, by the names of folders: '
+                     + '; '.join(summary.together[:3])
+                     + (' ...' if len(summary.together) > 3 else '')
+                     + '; if they are of several, name the folder that the folders of the '
+                     'vehicles are in, or a manifest with a column vehicle')
     if summary.undated:
         lines.append(f'{counted(len(summary.undated), "flight")} without a date in manifest, log '
                      'or name, dated by the last change of the file, which a copy may not keep: '

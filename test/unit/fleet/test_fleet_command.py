@@ -98,6 +98,15 @@ def test_the_end_says_which_groups_failed_and_left_older_results():
         'seven, 2026-05-14: it took long')
 
 
+def test_the_end_says_which_folders_are_taken_for_those_of_one_vehicle():
+    groups = {'diagnosed': 1, 'refused': 0, 'failed': 0, 'timeout': 0}
+    text = summary_text(Summary(2, groups, 0, (), together=('logs: a/logs, b/logs',)), 'out')
+    assert text.splitlines()[1] == (
+        'taken for flights of one vehicle, by the names of folders: logs: a/logs, b/logs; if they '
+        'are of several, name the folder that the folders of the vehicles are in, or a manifest '
+        'with a column vehicle')
+
+
 def test_the_end_says_which_flights_nothing_dates_but_their_files():
     groups = {'diagnosed': 7, 'refused': 0, 'failed': 0, 'timeout': 0}
     text = summary_text(Summary(12, groups, 7, (), undated=tuple('abcd')), 'out')

@@ -5,6 +5,7 @@
 
 from contextlib import suppress
 import os
+from pathlib import Path
 import re
 from types import SimpleNamespace
 
@@ -483,3 +484,23 @@ def test_findings_are_of_the_flight_whose_file_has_them(tmp_path, monkeypatch):
     assert found == {'1': [], '2': ['4.50'], '3': ['5.50']}
     of_group, = read_table(tmp_path / 'out', 'groups')['findings'].to_pylist()
     assert any(one.startswith('2/flight (2 parts): ') for one in of_group)
+
+
+def test_folders_that_may_be_of_several_vehicles_are_named(tmp_path, monkeypatch):
+    """As of months of vehicles, and of a folder with the same name for each vehicle."""
+    caught(monkeypatch, lambda given, item: given(item))
+    top = tmp_path / 'all' / '2026' / '05'
+    folders = [top / vehicle / 'logs' for vehicle in ('eight', 'nine')]
+    paths = [folder / day / 'a.csv' for folder in folders for day in ('2026-05-14', '2026-05-15')]
+    for path in paths:
+        path.parent.mkdir(parents=True)
+        path.write_text(f't,px\n0,{len(path.parts)}\n0.1,2\n# {path}\n', encoding='utf-8')
+
+    def together(*names):
+        return run.run_fleet(None, planned([*map(str, names)], vehicle='hummingbird'),
+                             tmp_path / f'out_{len(names)}_{Path(names[0]).name}').together
+
+    assert together(top) == ()
+    assert together(tmp_path / 'all') == (f'2026 (05): {folders[0].parent}, {folders[1].parent}',)
+    assert together(*paths) == (f'logs: {folders[0]}, {folders[1]}',)
+    assert together(*paths[:2]) == ()
