@@ -167,7 +167,8 @@ def run_fleet(client: Any, plan: Plan, out: str | Path, *, time_limit: float = T
                    tuple(went.values()), tuple(kept.values()),
                    tuple(f'{path} {why}' for path, why in removed.items()),
                    tuple(f'{group.vehicle}, {group.date.date()}: {outcome.reason}'
-                         for group, outcome in failed.values()),
+                         for key, (group, outcome) in failed.items()
+                         if status.get(key) not in DONE),
                    tuple(one.path for one, seen in zip(plan.flights, looked, strict=True)
                          if not seen.reason and date_said(one, seen) is None),
                    taken_together(zip(plan.flights, looked, strict=True)))
@@ -249,10 +250,12 @@ def _diagnose_all(client: Any, groups: Sequence[Group], out: str | Path,
         account.count_group(group, outcome)
     if not todo:
         return before, {}, {}
-    # A run beside this one may have ended with some of these flights meanwhile. What this one has
-    # done is known, though a list of the files may not show it yet.
-    return before, give_way(groups, out, {
-        key for key, one in (_statuses(out) | ended).items() if one in DONE}), failed
+    # A run beside this one may have ended with some of these flights meanwhile, and a worker with
+    # a group just after its time. What this run has done is known, though a list of the files may
+    # not show it yet.
+    now_done = {key for some in (_statuses(out), ended) for key, one in some.items()
+                if one in DONE}
+    return before, give_way(groups, out, now_done), failed
 
 
 def _check_written(groups: Sequence[Group], out: Path) -> set[str]:

@@ -11,6 +11,7 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.fleet.grouping import Group
 from quad_ident_ros.fleet.look import content_unknown
 from quad_ident_ros.fleet.store import keys_of, plain, read_rows, read_table, remove, write_rows
+from quad_ident_ros.fleet.work import DONE
 
 BY_GROUP = 'groups', 'effects'
 """Tables whose files have the key of a group; that says whether it exists comes first."""
@@ -225,6 +226,8 @@ def _leave_out(out: str | Path, key: str, others: Sequence[str]) -> None:
     has = {row['flight'] for other in others for row in read_rows(out, 'flights', other,
                                                                   ['flight'])}
     rows = read_rows(out, 'flights', key)
+    if any(row['status'] in DONE for row in read_rows(out, 'groups', key, ['status'])):
+        return      # it has just been done
     kept = [row for row in rows if row['flight'] not in has]
     if not kept:
         remove_group(out, key)

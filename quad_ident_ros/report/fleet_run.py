@@ -191,9 +191,10 @@ def summary_text(summary: Summary, out: str | Path) -> str:
         lines.append(f'{counted(count, "group")} failed, and the older results of '
                      f'{"its" if count == 1 else "their"} flights stay until there are new ones: '
                      f'{"; ".join(summary.stayed[:3])}' + (' ...' if count > 3 else ''))
-    if groups['failed'] or groups['timeout']:
-        lines.append('the same command tries again what failed; the reasons are in the column '
-                     f'reason of {out}/groups')
+    if failed := groups['failed'] + groups['timeout']:
+        lines.append('the same command tries again what failed'
+                     + (f'; the reasons are in the column reason of {out}/groups'
+                        if failed > len(summary.stayed) else ''))
     return '\n'.join(lines) + '\n'
 
 

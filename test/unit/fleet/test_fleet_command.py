@@ -96,6 +96,7 @@ def test_the_end_says_which_groups_failed_and_left_older_results():
     assert text.splitlines()[1] == (
         '1 group failed, and the older results of its flights stay until there are new ones: '
         'seven, 2026-05-14: it took long')
+    assert text.splitlines()[2] == 'the same command tries again what failed'
 
 
 def test_the_end_says_which_folders_are_taken_for_those_of_one_vehicle():

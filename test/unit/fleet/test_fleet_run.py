@@ -12,7 +12,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from quad_ident_ros.cluster import Done
+from quad_ident_ros.cluster import Done, TimeOver
 from quad_ident_ros.data.csv import write_csv
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.diagnose.intake import take_in
@@ -396,6 +396,29 @@ def test_a_group_that_fails_leaves_the_older_result_of_its_flights(fleet):
     assert summary.groups['refused'] == 1 and summary.stayed == ()
     after, = read_table('fleet', 'groups')['group'].to_pylist()
     assert after != before['groups'][0]['group']
+
+
+def test_a_group_that_is_done_just_after_its_time_takes_the_place_of_the_older_one(
+        flight, monkeypatch):
+    """Its worker has a few seconds for that."""
+    caught(monkeypatch, lambda given, item: given(item))
+    run.run_fleet(None, planned(['flights'], vehicle='hummingbird'), 'fleet')
+    flight.with_name('b.csv').write_text('t,px\n0,2\n0.1,2\n', encoding='utf-8')
+
+    def results(_, given, items, *__):
+        for item in items:
+            if isinstance(item, Group):
+                yield Done(item, error=TimeOver())
+            value = given(item)
+            if not isinstance(item, Group):
+                yield Done(item, value)
+
+    monkeypatch.setattr(run, 'results', results)
+    summary = run.run_fleet(None, planned(['flights'], vehicle='hummingbird'), 'fleet')
+    assert summary.groups['refused'] == 1 and summary.stayed == ()
+    row, = read_table('fleet', 'groups').to_pylist()
+    assert (row['status'], row['flights']) == ('refused', 2)
+    assert len(read_table('fleet', 'flights')) == 2
 
 
 def test_a_flight_that_is_new_in_a_group_that_fails_is_recorded_beside_the_older_result(
