@@ -12,6 +12,7 @@ from quad_ident_ros.data.columns import FORCE, POSITION, VELOCITY
 from quad_ident_ros.data.guess.names import AXES, BARE, NO_UNITS, NOT, plain, TURNED
 from quad_ident_ros.data.guess.series import alike, filled, turned
 from quad_ident_ros.data.mapping import Column, factor_of, Mapping
+from quad_ident_ros.data.motive import is_marker
 from quad_ident_ros.data.tabular import Table
 from quad_ident_ros.data.unit_names import unit_by
 
@@ -54,7 +55,8 @@ class Draft:
             if said:
                 self.units[name] = unit_by(said)
         self.free = [name for name in table.columns if not NOT.search(self.names[name])
-                     and np.isfinite(table.columns[name]).sum() >= 2]
+                     and np.isfinite(table.columns[name]).sum() >= 2
+                     and not is_marker(name, table.bodies)]
         self.t: np.ndarray | None = None            # (N,) s
         self.attitude: np.ndarray | None = None     # (N, 4), scalar first
         # Columns of a group, or None, by the group.

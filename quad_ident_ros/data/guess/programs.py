@@ -2,15 +2,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tables of programs whose names of columns mean something else than they say."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from quad_ident_ros.data.betaflight import ORDER, QUAD_X
-from quad_ident_ros.data.columns import FORCE, RATE
+from quad_ident_ros.data.columns import FORCE, POSITION, RATE
 from quad_ident_ros.data.guess.draft import Draft, together
 from quad_ident_ros.data.guess.motion import HOVERS
 from quad_ident_ros.data.guess.series import is_unit, unit_length
 from quad_ident_ros.data.motor_order import about_motors
-from quad_ident_ros.data.record import QUATERNION
+from quad_ident_ros.data.quality import frames
+from quad_ident_ros.data.record import FlightRecord, QUATERNION
 
 RAW, ONE_G = 'g/2048', 2048.0   # of accelerometers of 16 bits over +-16 g, as Betaflight sets them
 
@@ -58,6 +61,44 @@ def qualisys(draft: Draft) -> None:
             f'attitude: {together(angles)} of Qualisys are turns about x, y and z in this order, '
             'not yaw, pitch and roll, or as QTM is set; add columns qw, qx, qy, qz, of the '
             'rotation matrix Rot[0] to Rot[8]')
+
+
+def motive(draft: Draft) -> None:
+    """
+    Turn the pose in a table of Motive where the vehicle leans as with y up, or leave it in doubt.
+
+    The world and the bodies have y up unless the program is set otherwise, which no line shows.
+    """
+    if not draft.table.doubts:
+        return
+    up = _axis_up(draft)
+    if not up:
+        draft.guess.doubts += draft.table.doubts
+        return
+    draft.guess.said.append(f'{up} is up, by how the vehicle leans')
+    if up == 'y':
+        found, q = draft.columns, draft.attitude
+        found['py'], found['pz'] = (replace(found['pz'], unit=f'-{found["pz"].unit or "m"}'),
+                                    found['py'])
+        found['qy'], found['qz'] = replace(found['qz'], unit='-1'), found['qy']
+        assert q is not None    # else no axis is known to be up
+        draft.attitude = np.column_stack([q[:, 0], q[:, 1], -q[:, 3], q[:, 2]])
+
+
+def _axis_up(draft: Draft) -> str:
+    """Return the axis, y or z, by which the pose leans as what flies does, '' in doubt."""
+    if draft.t is None or draft.attitude is None or not {*POSITION, *QUATERNION} <= set(
+            draft.columns):
+        return ''
+    place = draft.scaled(POSITION)
+    there = [draft.columns[name].names[0] for name in (*POSITION, *QUATERNION)]
+    rows = np.flatnonzero(np.isfinite(draft.t) & np.isfinite(draft.logged(there)).all(axis=1))
+    rows = rows[:1].tolist() + rows[1:][np.diff(draft.t[rows]) > 0].tolist()
+    if len(rows) < 2:
+        return ''
+    return frames.axis_up(FlightRecord(draft.t[rows], {
+        **dict(zip(POSITION, place[rows].T, strict=True)),
+        **dict(zip(QUATERNION, draft.attitude[rows].T, strict=True))}, {}))[0]
 
 
 def blackbox_decode(draft: Draft) -> None:

@@ -16,7 +16,7 @@ from flightmaker import (
 import numpy as np
 import pytest
 from reader_checks import refused
-from table_files import FORCE, named, PLACE, Q, RATE, SPEED, table
+from table_files import FORCE, motive, named, PLACE, Q, RATE, SPEED, table
 
 from quad_ident_ros.data.columns import from_euler
 from quad_ident_ros.data.differentiated import with_motion
@@ -125,41 +125,36 @@ def test_a_minus_before_a_unit_turns_a_column(tmp_path):
     same(load(table(tmp_path, found), mapping), PLACE, Q)
 
 
-def test_what_motive_writes_is_told_and_asked_for_its_axes(tmp_path):
-    names = ['Rotation'] * 4 + ['Position'] * 3
-    above = ('Format Version,1.23,Take Name,one,Length Units,Meters,Coordinate Space,Global\n\n'
-             + ''.join(f',{head},{",".join(cells)}\n' for head, cells in (
-                 ('Type', 7 * ['Rigid Body']), ('Name', 7 * ['quad']), ('ID', 7 * ['1'])))
-             + f',,{",".join(names)}\nFrame,Time (Seconds),X,Y,Z,W,X,Y,Z\n')
-    rows = np.column_stack([np.arange(len(T)), T, FLIGHT.stack(*XYZW), FLIGHT.stack(*PLACE)])
-    path = tmp_path / 'take.csv'
-    path.write_text(above + '\n'.join(','.join(map(repr, row)) for row in rows.tolist()) + '\n')
-    refused(path, 'Motive', 'Z up', '--write-mapping')
-    mapping = mapping_from({'quaternion': 'xyzw', 'columns': {
-        't': 'Time (Seconds)', 'q': [f'Rotation {letter}' for letter in 'XYZW'],
-        'px': 'Position X', 'py': 'Position Y', 'pz': 'Position Z'}}, 'a test')
-    same(load(path, mapping), PLACE, Q)
+def with_y_up(turns, place):
+    """Return quaternions, scalar last, and places with z up as motion capture has them: y up."""
+    x, y, z, w = turns.T
+    return np.column_stack([x, z, -y, w]), place[:, [0, 2, 1]] * [1.0, 1.0, -1.0]
 
 
-def test_markers_beside_a_body_of_motive_are_told_apart(tmp_path):
-    """A take has the markers of the body as well, whose columns have the names of its own."""
-    kinds = 7 * ['Rigid Body'] + 6 * ['Rigid Body Marker']
-    owners = 7 * ['quad'] + 3 * ['quad:Marker1'] + 3 * ['quad:Marker2']
-    names = ['Rotation'] * 4 + ['Position'] * 9
-    above = ('Format Version,1.23,Take Name,one,Length Units,Meters\n\n'
-             + ''.join(f',{head},{",".join(cells)}\n' for head, cells in (
-                 ('Type', kinds), ('Name', owners), ('ID', 7 * ['1'] + 3 * ['2'] + 3 * ['3'])))
-             + f',,{",".join(names)}\nFrame,Time (Seconds),X,Y,Z,W{3 * ",X,Y,Z"}\n')
-    place = FLIGHT.stack(*PLACE)
-    rows = np.column_stack([np.arange(len(T)), T, FLIGHT.stack(*XYZW), place, place + 1.0,
-                            place - 1.0])
-    path = tmp_path / 'take.csv'
-    path.write_text(above + '\n'.join(','.join(map(repr, row)) for row in rows.tolist()) + '\n')
+@pytest.mark.parametrize('up', ['y', 'z'])
+@pytest.mark.parametrize(('unit', 'factor'), [('Meters', 1.0), ('Centimeters', 100.0)])
+def test_the_axis_that_is_up_in_a_take_of_motive_is_told_by_how_the_vehicle_leans(
+        tmp_path, up, unit, factor):
+    pose = FLIGHT.stack(*XYZW), factor * FLIGHT.stack(*PLACE)
+    path = motive(tmp_path, T, {'quad': with_y_up(*pose) if up == 'y' else pose}, unit, markers=2)
+    read = load(path)
+    same(read, PLACE, Q)
+    assert f'{up} is up, by how the vehicle leans' in read.info['notes']
+    assert 'frame_y_up' not in [one.code for one in findings(read, None)]
+
+
+def test_a_take_of_motive_that_hovers_is_asked_for_its_axes(tmp_path):
+    """Nothing leans in it, so any axis may be the one that is up."""
+    place = np.tile(FLIGHT.stack(*PLACE)[0], (len(T), 1))
+    turns = np.tile([0.0, 0.0, 0.0, 1.0], (len(T), 1))
+    path = motive(tmp_path, T, {'quad': (turns, place)}, markers=2)
     refused(path, 'Motive', 'Z up', '--write-mapping')
     mapping = mapping_from({'quaternion': 'xyzw', 'columns': {
         't': 'Time (Seconds)', 'q': [f'Rotation {letter}' for letter in 'XYZW'],
         **{f'p{letter.lower()}': f'quad Position {letter}' for letter in 'XYZ'}}}, 'a test')
-    same(load(path, mapping), PLACE, Q)
+    read = load(path, mapping)
+    np.testing.assert_allclose(read.stack(*PLACE), place)
+    np.testing.assert_allclose(read.stack(*XYZW), turns)
 
 
 @pytest.mark.parametrize(('stamp', 'name'), [
