@@ -30,9 +30,9 @@ AXES = {
               r'drone|uav|quad|robot|rigid_body|ground_truth|gt|odom|pose)_?{}$',
     VELOCITY: rf'(^|_)(v{_IN}|vel|velocity|speed|linear_velocity|twist_linear|linear)_?{{}}$',
     FORCE: rf'(^|_)(a{_IN}|acc|accel|accelerometer|accelerations?|linear_acceleration|'
-           r'specific_force)(_b|_body|_m_s2)?_?{}$',
+           r'specific_force)(_b|_body|_m_s2|_xyz)?_?{}$',
     RATE: rf'(^|_)(w{_IN}|gyro|gyr|gyroscope|gyro_rad|omega|om|rate|rates|body_?rates?|ang_vel|'
-          r'angvel|angular_velocity|angular_rate|twist_angular|angular)(_b|_body)?_?{}$',
+          r'angvel|angular_velocity|angular_rate|twist_angular|angular)(_b|_body|_xyz)?_?{}$',
     QUATERNION: rf'(^|_)(q{_IN}|quat|quaternion|orientation|rotation|att_q|attitude_q)_?{{}}$',
 }
 TURNED = re.compile(r'(^|_)(ang|angular|gyro|rot)')
@@ -103,6 +103,7 @@ def plain(name: str) -> tuple[str, str]:
         name, said = name[:match.start()], match.group(1).strip().lower()
     name = re.sub(r'([a-z0-9])([A-Z])', r'\1_\2', name.strip())
     name = re.sub(r'[^a-z0-9]+', '_', without_accents(name).lower()).strip('_')
+    name = re.sub(r'_0(\d)$', r'_\1', name)      # PlotJuggler counts .00, .01, ...
     match = ENDING.search(name)
     if not said and match and len(name) > len(match.group()):
         name, said = name[:match.start()], match.group(1)

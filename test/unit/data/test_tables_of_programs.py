@@ -3,6 +3,7 @@
 """Tables as certain programs write them, held against the flight that is in them."""
 
 from dataclasses import replace
+from datetime import datetime, timedelta
 
 from flightmaker import (
     changed,
@@ -24,7 +25,7 @@ from quad_ident_ros.data.load import load, load_all
 from quad_ident_ros.data.mapping import mapping_from
 from quad_ident_ros.data.quality import findings
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.model.attitude import euler_from_quaternion, product
+from quad_ident_ros.model.attitude import conjugate, euler_from_quaternion, product, rotate
 from quad_ident_ros.model.dynamics import course_of, states_of
 
 FLIGHT = flight(seconds=10.0, rate=100.0)
@@ -125,6 +126,21 @@ def test_a_minus_before_a_unit_turns_a_column(tmp_path):
     same(load(table(tmp_path, found), mapping), PLACE, Q)
 
 
+def test_plotjuggler_counts_entries_of_px4_in_two_digits(tmp_path):
+    """Beside them is the acceleration of the estimator, which has no gravity."""
+    moved = ned(rotate(FLIGHT.stack(*Q), FLIGHT.stack(*FORCE)) - [0.0, 0.0, 9.81])
+    found = {'__time': T, **named([f'/vehicle_attitude/q.0{k}' for k in range(4)],
+                                  ned_attitude(FLIGHT.stack(*Q)))}
+    for name, group, turn in (('vehicle_local_position/{}', PLACE, ned),
+                              ('vehicle_local_position/v{}', SPEED, ned),
+                              ('vehicle_angular_velocity/xyz.0{}', RATE, frd),
+                              ('vehicle_acceleration/xyz.0{}', FORCE, frd)):
+        axes = 'xyz' if name.endswith('{}') and '.0' not in name else '012'
+        found |= named([f'/{name.format(axis)}' for axis in axes], turn(FLIGHT.stack(*group)))
+    found |= named([f'/vehicle_local_position/a{axis}' for axis in 'xyz'], moved)
+    same(load(table(tmp_path, found)), PLACE, SPEED, Q, RATE, FORCE)
+
+
 def with_y_up(turns, place):
     """Return quaternions, scalar last, and places with z up as motion capture has them: y up."""
     x, y, z, w = turns.T
@@ -172,6 +188,28 @@ def test_an_index_of_pandas_is_the_time(tmp_path, stamp, name):
     np.testing.assert_allclose(read.stack(*PLACE), FLIGHT.stack(*PLACE)[:len(read)], atol=1e-6)
     if name == 'when':
         assert read.info['start_ns'] == np.datetime64('2026-03-01T08:00:00', 'ns').astype(int)
+
+
+@pytest.mark.parametrize('stamp', ['{:%H:%M:%S.%f}', '{:%I:%M:%S.%f %p}'])
+def test_a_time_of_day_goes_on_behind_midnight(tmp_path, stamp):
+    begin = datetime(2026, 3, 1, 23, 59, 56)
+    path = table(tmp_path, {'n': T, **columns('', 'xyz', PLACE), **columns('q', 'wxyz', Q)})
+    head, *rows = path.read_text().splitlines()
+    path.write_text('\n'.join([f'time,{head}', *(
+        f'{stamp.format(begin + timedelta(seconds=t))},{row}'
+        for t, row in zip(T, rows, strict=True))]) + '\n')
+    read = load(path)
+    np.testing.assert_allclose(read.t - read.t[0], T, atol=1e-6)
+    same(replace(read, t=read.t - read.t[0]), PLACE, Q)
+
+
+@pytest.mark.parametrize(('unit', 'long'), [('sec', 1.0), ('min', 60.0), ('hr', 3600.0)])
+def test_a_duration_of_matlab_is_a_time(tmp_path, unit, long):
+    path = table(tmp_path, {'n': T, **columns('pos_', 'xyz', PLACE), **columns('q', 'wxyz', Q)})
+    head, *rows = path.read_text().splitlines()
+    path.write_text('\n'.join([f'Time,{head}', *(f'{t / long:.9g} {unit},{row}' for t, row in zip(
+        T, rows, strict=True))]) + '\n')
+    same(load(path), PLACE, Q)
 
 
 def test_a_date_that_does_not_exist_is_named(tmp_path):
@@ -239,6 +277,33 @@ def test_a_unit_that_position_and_velocity_share_is_told_by_the_tilt(tmp_path, s
              **named(('vx', 'vy', 'vz'), size * FLIGHT.stack(*SPEED)),
              **named(Q, FLIGHT.stack(*Q))}
     same(load(table(tmp_path, found)), PLACE, SPEED, Q)
+
+
+@pytest.mark.parametrize('place', [False, True])
+def test_the_unit_of_a_velocity_is_told_by_the_other_streams(tmp_path, place):
+    """In cm/s it was taken for one in mm/s where the position was in m, or missing."""
+    path = table(tmp_path, {'time': T, **(columns('', 'xyz', PLACE) if place else {}),
+                            **named(['vx', 'vy', 'vz'], 100 * FLIGHT.stack(*SPEED)),
+                            **columns('q', 'wxyz', Q), **columns('gyro_', 'xyz', RATE),
+                            **columns('acc_', 'xyz', FORCE)})
+    read = load(path)
+    same(read, SPEED, Q, *([PLACE] if place else []))
+    assert 'vx, vy, vz: velocity in cm/s, world axes' in ' '.join(read.info['notes'])
+
+
+@pytest.mark.parametrize('size', [0.4, 1.0, 2.5])
+@pytest.mark.parametrize('turned', [False, True])
+def test_an_acceleration_without_gravity_is_no_specific_force_in_any_unit(tmp_path, size, turned):
+    """Its size may be about 1 as that of one in g is, but not in one direction."""
+    q, force = FLIGHT.stack(*Q), FLIGHT.stack(*FORCE)
+    moved = size * (rotate(q, force) - [0.0, 0.0, 9.81])
+    found = {'time': T, **columns('', 'xyz', PLACE), **columns('q', 'wxyz', Q),
+             **named(['acc_x', 'acc_y', 'acc_z'], rotate(conjugate(q), moved) if turned else
+                     moved)}
+    read = load(table(tmp_path, found))
+    assert not read.has('ax')
+    assert 'an acceleration without gravity' in ' '.join(read.info['notes'])
+    same(load(table(tmp_path, {**found, **columns('imu_accel_', 'xyz', FORCE)})), FORCE)
 
 
 def test_headings_without_cells_tell_names_apart(tmp_path):
