@@ -17,9 +17,9 @@ from quad_ident_ros.data.mapping import Mapping
 from quad_ident_ros.data.tabular import shown, Table
 
 STEPS = (clock.time, programs.blackbox_decode, programs.vicon, programs.qualisys,
-         motion.vectors, attitude.quaternion, attitude.angles, attitude.rates, motion.positions,
-         programs.motive, motion.forces, motion.axes, motion.velocities, motors.motors,
-         motors.battery)
+         programs.crazyflie, motion.vectors, attitude.quaternion, attitude.angles, attitude.rates,
+         motion.positions, programs.motive, motion.forces, motion.axes, motion.velocities,
+         motors.motors, motors.battery)
 BEYOND = 1e30   # no quantity of a flight, in any unit, is as large
 
 

@@ -29,7 +29,8 @@ def vectors(draft: Draft) -> None:
     draft.found = {group: draft.trio(group, 'xyz') or draft.numbered(group)
                    for group in (POSITION, VELOCITY, RATE, FORCE)}
     if draft.found[RATE] is None:
-        turning = [draft.one(rf'(^|_){axis}_?(rate|speed|vel)$') for axis in TURNING]
+        turning = [draft.one(rf'(^|_){axis}_?(rate|speed|vel)$', draft.states)
+                   for axis in TURNING]
         names = [name for name in turning if name is not None]
         if len(names) == len(TURNING):
             draft.found[RATE] = names

@@ -19,7 +19,7 @@ NO_UNITS = frozenset(('', '-', '1', 'world', 'body', 'global', 'local', 'inertia
 """What stands in brackets behind names, or in a line of units, and is none."""
 
 NOT = re.compile(r'(^|_)(sp|setpoint|des|desired|ref|reference|target|goal|cov|covariance|var|'
-                 r'std|err|error|raw|bias|offset|mag)(_|$)|^b_[awg]_')
+                 r'std|err|error|raw|bias|offset|mag|wind)(_|$)|^b_[awg]_')
 """Of names that are not what was measured; b_w and b_a are biases."""
 
 _IN = r'(?:_[wbiesgrmv]{{1,2}}){{0,2}}'
@@ -67,8 +67,13 @@ MOTOR = re.compile(r'(^|_)(cmd|command|motor_cmd|m|mot|mot_m|motor|motors|motor_
                    r'output|outputs|control|actuator|action|throttle|thrust|duty|rc_?out|rcou_c|'
                    r'servo)'
                    rf'(?:_(?:data|control|velocities|angular_velocities|{_WORDS}))?_?(\d{{1,2}})$')
-COMMANDED = re.compile(r'(^|_)(cmds?|commands?|commanded|req)(_|$)')
+_ASKED = r'(^|_)(cmds?|commands?|commanded|req)(_|$)'
+COMMANDED = re.compile(_ASKED)
 """Of rotor speeds that are asked for, not measured."""
+
+WANTED = re.compile(rf'{_ASKED}|(^|_)(planned|inputs?)_|(^|_)(controller|ctrl_?target)_'
+                    r'(v?[xyz]|q[wxyz]|(roll|pitch|yaw)(_rate)?)$')
+"""Of states that are asked for; the last are log variables of a Crazyflie."""
 
 REPORTED = re.compile(r'(^|_)esc_?\d')
 """Names of motors whose speeds, where named so, a speed controller has measured."""

@@ -2,7 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tables of programs whose names of columns mean something else than they say."""
 
+from collections.abc import Iterable
 from dataclasses import replace
+import re
 
 import numpy as np
 
@@ -15,6 +17,7 @@ from quad_ident_ros.data.motor_order import about_motors
 from quad_ident_ros.data.quality import frames
 from quad_ident_ros.data.record import FlightRecord, QUATERNION
 
+_CRAZYFLIE = re.compile(r'motor_m[1-4]$|state_estimate_|stabilizer_|kalman_|pm_vbat$')
 RAW, ONE_G = 'g/2048', 2048.0   # of accelerometers of 16 bits over +-16 g, as Betaflight sets them
 
 
@@ -99,6 +102,42 @@ def _axis_up(draft: Draft) -> str:
     return frames.axis_up(FlightRecord(draft.t[rows], {
         **dict(zip(POSITION, place[rows].T, strict=True)),
         **dict(zip(QUATERNION, draft.attitude[rows].T, strict=True))}, {}))[0]
+
+
+def crazyflie(draft: Draft) -> None:
+    """
+    Name log variables of a Crazyflie by what they are, in their units.
+
+    The state of its Kalman filter has the velocity in body axes as PX, PY, PZ; stateEstimateZ has
+    mm, mm/s and mrad/s, the pitch rate with the other sign; its gyro is in deg/s where its
+    accelerometer is in g. Source: log variables in Bitcraze's documentation.
+    """
+    columns = {plain: name for name, plain in draft.names.items()}
+
+    def group(pattern: str, axes: Iterable[str] = 'xyz') -> list[str]:
+        names = [columns.get(pattern.format(axis), '') for axis in axes]
+        return names if all(name in draft.free for name in names) else []
+
+    for pattern, meant in (('kalman_state_p{}', 'body_velocity_{}'),
+                           ('kalman_state_{}', 'kalman_position_{}')):
+        for axis, name in zip('xyz', group(pattern), strict=False):
+            draft.names[name] = meant.format(axis)
+    whole = {'': 'mm', 'v': 'mm/s'}
+    for before, unit in whole.items():
+        for axis, name in zip('xyz', group(f'state_estimate_z_{before}{{}}'), strict=False):
+            if f'state_estimate_{before}{axis}' in columns:
+                draft.taken([name], '')
+            draft.names[name], draft.units[name] = f'state_estimate_{before}{axis}', unit
+    gyro, force = group('gyro_{}'), group('acc_{}')
+    turning = group('state_estimate_z_rate_{}', ('roll', 'pitch', 'yaw'))
+    if turning and not gyro:
+        draft.take(RATE, turning, 'mrad/s', role='rate', said='body rate in mrad/s, pitch with '
+                   'the other sign')
+        draft.columns['wy'] = replace(draft.columns['wy'], unit='-mrad/s')
+    if gyro and force and any(map(_CRAZYFLIE.match, columns)):
+        usual = float(np.nanmedian(np.linalg.norm(draft.values(force), axis=1)))
+        if HOVERS[0] < usual < HOVERS[1] and not any(draft.units[name] for name in gyro):
+            draft.units.update(dict.fromkeys(gyro, 'deg/s'))
 
 
 def blackbox_decode(draft: Draft) -> None:

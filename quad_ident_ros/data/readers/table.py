@@ -138,7 +138,7 @@ def is_record(path: Path) -> bool:
 
 
 def _inputs(path: Path, names: list[str]) -> np.ndarray:
-    """Return thrust and moments (N, 4) in the first lines of a table, as far as they are numbers."""
+    """Return the numbers (N, 4) of u1 to u4 in the first lines of a table."""
     begin = first_rows(path, _LINES)
     places, found = [names.index(name) for name in INPUTS], []
     for row in begin[0][1:] if begin else ():

@@ -114,6 +114,68 @@ def test_a_pitch_whose_sign_the_gyro_contradicts_is_turned(tmp_path):
     assert any('pitch with the other sign' in note for note in read.info['notes'])
 
 
+DEGREES = np.degrees(euler_from_quaternion(FLIGHT.stack(*Q))) * [1.0, -1.0, 1.0]
+CRAZYFLIE = {'Timestamp': np.round(1000 * T), **columns('stateEstimate.', 'xyz', PLACE),
+             **{f'motor.m{k}': np.round(30 * FLIGHT.columns[f'cmd{k}']) for k in range(1, 5)}}
+ANGLES = named([f'stateEstimate.{angle}' for angle in ('roll', 'pitch', 'yaw')], DEGREES)
+LATE = np.roll(np.arange(len(T)), 20)
+
+
+@pytest.mark.parametrize(('names', 'values'), [
+    (['cmd_vel_x', 'cmd_vel_y', 'cmd_vel_z'], FLIGHT.stack(*SPEED)),
+    (['command velocity x', 'command velocity y', 'command velocity z'], FLIGHT.stack(*SPEED)),
+    (['cmd_roll', 'cmd_pitch', 'cmd_yaw'], DEGREES),
+    (['cmd_roll_rate', 'cmd_pitch_rate', 'cmd_yaw_rate'], FLIGHT.stack(*RATE)),
+    (['controller.roll', 'controller.pitch', 'controller.yaw'], DEGREES),
+    (['controller.rollRate', 'controller.pitchRate', 'controller.yawRate'], FLIGHT.stack(*RATE)),
+    (['planned_vel_x', 'planned_vel_y', 'planned_vel_z'], FLIGHT.stack(*SPEED)),
+    (['wind_vx', 'wind_vy', 'wind_vz'], FLIGHT.stack(*SPEED)),
+    (['ctrltarget.vx', 'ctrltarget.vy', 'ctrltarget.vz'], FLIGHT.stack(*SPEED))])
+def test_states_that_are_asked_for_are_none_that_were_measured(tmp_path, names, values):
+    """They come before what they ask for; controller.roll was taken in place of the attitude."""
+    read = load(table(tmp_path, {**CRAZYFLIE, **ANGLES, **named(names, values[LATE])}))
+    same(read, PLACE, Q)
+    assert not read.has('vx') and not read.has('wx') and read.has('output4')
+    alone = {name: values for name, values in CRAZYFLIE.items() if name not in ANGLES}
+    read = load(table(tmp_path, {**alone, **named(names, values[LATE])}))
+    assert not any(read.has(name) for name in ('vx', 'wx', 'qw'))
+
+
+def test_the_kalman_filter_of_a_crazyflie_has_its_velocity_in_the_body(tmp_path):
+    """It is named PX, PY, PZ, as a position would be."""
+    found = {name: values for name, values in CRAZYFLIE.items() if 'stateEstimate' not in name}
+    found |= named([f'kalman.q{k}' for k in range(4)], FLIGHT.stack(*Q))
+    found |= named([f'kalman.stateP{axis}' for axis in 'XYZ'], world_velocity_in_body(FLIGHT))
+    same(load(table(tmp_path, found)), SPEED, Q)
+    same(load(table(tmp_path, {**found, **columns('kalman.state', 'XYZ', PLACE)})),
+         PLACE, SPEED, Q)
+
+
+@pytest.mark.parametrize('both', [False, True])
+def test_the_packed_state_of_a_crazyflie_has_units_of_its_own(tmp_path, both):
+    found = {**CRAZYFLIE, **ANGLES} if both else {
+        **{name: values for name, values in CRAZYFLIE.items() if 'stateEstimate' not in name},
+        **columns('q', 'wxyz', Q)}
+    for before, group, size in (('', PLACE, 1000), ('v', SPEED, 1000)):
+        found |= named([f'stateEstimateZ.{before}{axis}' for axis in 'xyz'],
+                       np.round(size * FLIGHT.stack(*group)))
+    found |= named([f'stateEstimateZ.rate{axis}' for axis in ('Roll', 'Pitch', 'Yaw')],
+                   np.round(1000 * FLIGHT.stack(*RATE) * [1, -1, 1]))
+    same(load(table(tmp_path, found)), PLACE, SPEED, RATE, Q, atol=1e-3)
+
+
+@pytest.mark.parametrize(('weight', 'turn'), [(9.80665, np.pi / 180), (1.0, 1.0)])
+def test_a_calm_gyro_of_a_crazyflie_is_in_degrees_where_its_accelerometer_is_in_g(
+        tmp_path, weight, turn):
+    """Below 12 deg/s its size shows nothing, and there is no attitude to hold it against."""
+    motors = {name: values for name, values in CRAZYFLIE.items() if 'stateEstimate' not in name}
+    rate = 0.1 * FLIGHT.stack(*RATE)
+    read = load(table(tmp_path, {**motors, **named(['gyro.x', 'gyro.y', 'gyro.z'], rate / turn),
+                                 **named(['acc.x', 'acc.y', 'acc.z'],
+                                         FLIGHT.stack(*FORCE) / weight)}))
+    np.testing.assert_allclose(read.stack(*RATE), rate, atol=1e-9)
+
+
 def test_a_minus_before_a_unit_turns_a_column(tmp_path):
     """Motion capture with y up: east, up, south."""
     found = {'time': T, 'a': FLIGHT.columns['px'], 'b': FLIGHT.columns['pz'],
