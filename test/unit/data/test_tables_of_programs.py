@@ -114,6 +114,18 @@ def test_a_pitch_whose_sign_the_gyro_contradicts_is_turned(tmp_path):
     assert any('pitch with the other sign' in note for note in read.info['notes'])
 
 
+@pytest.mark.parametrize('names', ['wxyz', '0123'])
+def test_rows_of_zeros_before_tracking_are_no_attitude(tmp_path, names):
+    """Programs of motion capture write zeros where they do not see the body."""
+    later = (T >= 3.0)[:, None]
+    path = table(tmp_path, {'time': T, **named(['x', 'y', 'z'], later * FLIGHT.stack(*PLACE)),
+                            **named([f'q{name}' for name in names], later * FLIGHT.stack(*Q)),
+                            **columns('gyro_', 'xyz', RATE)})
+    read = load(path)
+    assert read.t[0] == pytest.approx(3.0)
+    same(read, PLACE, Q, RATE)
+
+
 DEGREES = np.degrees(euler_from_quaternion(FLIGHT.stack(*Q))) * [1.0, -1.0, 1.0]
 CRAZYFLIE = {'Timestamp': np.round(1000 * T), **columns('stateEstimate.', 'xyz', PLACE),
              **{f'motor.m{k}': np.round(30 * FLIGHT.columns[f'cmd{k}']) for k in range(1, 5)}}
