@@ -15,7 +15,7 @@ from quad_ident_ros.data.guess.motion import HOVERS
 from quad_ident_ros.data.guess.series import is_unit, unit_length
 from quad_ident_ros.data.motor_order import about_motors
 from quad_ident_ros.data.quality import frames
-from quad_ident_ros.data.record import FlightRecord, QUATERNION
+from quad_ident_ros.data.record import faulty, FlightRecord, QUATERNION
 
 _CRAZYFLIE = re.compile(r'motor_m[1-4]$|state_estimate_|stabilizer_|kalman_|pm_vbat$')
 RAW, ONE_G = 'g/2048', 2048.0   # of accelerometers of 16 bits over +-16 g, as Betaflight sets them
@@ -93,15 +93,16 @@ def _axis_up(draft: Draft) -> str:
     if draft.t is None or draft.attitude is None or not {*POSITION, *QUATERNION} <= set(
             draft.columns):
         return ''
-    place = draft.scaled(POSITION)
     there = [draft.columns[name].names[0] for name in (*POSITION, *QUATERNION)]
-    rows = np.flatnonzero(np.isfinite(draft.t) & np.isfinite(draft.logged(there)).all(axis=1))
-    rows = rows[:1].tolist() + rows[1:][np.diff(draft.t[rows]) > 0].tolist()
-    if len(rows) < 2:
+    seen = np.isfinite(draft.logged(there)).all(axis=1)
+    columns = dict(zip((*POSITION, *QUATERNION), np.hstack(
+        [draft.scaled(POSITION), draft.attitude])[seen].T, strict=True))
+    t = draft.t[seen]
+    good = ~faulty(t, columns)
+    if good.sum() < 2:
         return ''
-    return frames.axis_up(FlightRecord(draft.t[rows], {
-        **dict(zip(POSITION, place[rows].T, strict=True)),
-        **dict(zip(QUATERNION, draft.attitude[rows].T, strict=True))}, {}))[0]
+    return frames.axis_up(FlightRecord(t[good], {
+        name: values[good] for name, values in columns.items()}, {}))[0]
 
 
 def crazyflie(draft: Draft) -> None:

@@ -233,6 +233,14 @@ def test_the_axis_that_is_up_in_a_take_of_motive_is_told_by_how_the_vehicle_lean
     assert 'frame_y_up' not in [one.code for one in findings(read, None)]
 
 
+def test_a_take_of_motive_may_have_rows_out_of_order_and_without_the_body(tmp_path):
+    turns, place = with_y_up(FLIGHT.stack(*XYZW), FLIGHT.stack(*PLACE))
+    place[200:260] = np.nan
+    order = np.arange(len(T))
+    order[[3, 4, 5, 6]] = 6, 4, 3, 5
+    same(load(motive(tmp_path, T[order], {'quad': (turns[order], place[order])})), PLACE, Q)
+
+
 def test_a_take_of_motive_that_hovers_is_asked_for_its_axes(tmp_path):
     """Nothing leans in it, so any axis may be the one that is up."""
     place = np.tile(FLIGHT.stack(*PLACE)[0], (len(T), 1))
