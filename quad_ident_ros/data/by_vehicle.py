@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tables of several vehicles, as those of motion capture and of swarms: by row or by column."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 import re
 
@@ -53,9 +54,9 @@ def _side_by_side(table: Table) -> dict[str, Table]:
     """Return as by_vehicle the parts of a Table that has columns of several vehicles."""
     found: dict[str, list[str]] = {}
     for column in table.columns:
-        match = _BEFORE.fullmatch(column)
-        if match:
-            found.setdefault(match[1] or match[2], []).append(column)
+        before = _before(column, table.bodies)
+        if before:
+            found.setdefault(before, []).append(column)
     bodies = {before: columns for before, columns in found.items() if _has_axes(
         {plain(column.removeprefix(before))[0] for column in columns})}
     if not 2 <= len(bodies) <= MOST:
@@ -73,6 +74,14 @@ def _side_by_side(table: Table) -> dict[str, Table]:
         notes=(*table.notes, f'columns of vehicle {names[before]} of {shown(names.values())}, by '
                              'what they begin with; a mapping may name those of one', *notes))
             for before, columns in bodies.items()}
+
+
+def _before(column: str, bodies: Sequence[str]) -> str:
+    """Return what the name of a column begins with that says its vehicle, one of bodies if any."""
+    if bodies:
+        return next((f'{body} ' for body in bodies if column.startswith(f'{body} ')), '')
+    match = _BEFORE.fullmatch(column)
+    return match[1] or match[2] if match else ''
 
 
 def _has_axes(names: set[str]) -> bool:

@@ -25,10 +25,14 @@ Year first as ISO 8601 writes it; or last, behind day and month in either order.
 _PASSED = re.compile(rf'(?:(\d{{1,5}}) days? )?{_CLOCK}$')
 """A time of day, or one since a start, which pandas writes with days."""
 
+_SPAN = re.compile(r'([-+]?\d{1,9}(?:\.\d+)?(?:e[-+]\d{1,2})?) (sec|min|hr|days?)$')
+"""A duration as MATLAB writes it, and its units in s."""
+_SPANS = {'sec': 1.0, 'min': 60.0, 'hr': 3600.0, 'day': 86400.0, 'days': 86400.0}
+
 
 def is_time(cell: str) -> bool:
-    """Return whether a cell has a date with a time of day, or a time alone."""
-    return bool(_DATE.match(cell) or _PASSED.match(cell))
+    """Return whether a cell has a date with a time of day, a time alone, or a duration."""
+    return bool(_DATE.match(cell) or _PASSED.match(cell) or _SPAN.match(cell))
 
 
 def seconds_of(cells: Sequence[str], where: Callable[[int], str]) -> np.ndarray | None:
@@ -38,11 +42,14 @@ def seconds_of(cells: Sequence[str], where: Callable[[int], str]) -> np.ndarray 
     None for cells of something else. Args: where: what messages call the place of a cell.
     Raises InputError for a date that does not exist, or that may be read in two ways.
     """
+    told = [_SPAN.match(cell) for cell in cells]
+    if all(one for one, cell in zip(told, cells, strict=True) if cell):
+        return np.array([float(one[1]) * _SPANS[one[2]] if one else np.nan for one in told])
     told = [_PASSED.match(cell) for cell in cells]
     if all(one for one, cell in zip(told, cells, strict=True) if cell):
-        return np.array([86400 * int(one[1] or 0) + 3600 * _hour(one[2], one[5])
-                         + 60 * int(one[3]) + float(one[4].replace(',', '.')) if one else np.nan
-                         for one in told])
+        return _over_midnight(np.array(
+            [86400 * int(one[1] or 0) + 3600 * _hour(one[2], one[5]) + 60 * int(one[3])
+             + float(one[4].replace(',', '.')) if one else np.nan for one in told]))
     told = [_DATE.match(cell) for cell in cells]
     if any(cell and not one for one, cell in zip(told, cells, strict=True)):
         return None
@@ -56,6 +63,14 @@ def seconds_of(cells: Sequence[str], where: Callable[[int], str]) -> np.ndarray 
                 raise InputError(f'{where(k)}: {one[0][:40]!r} is not a date; correct it or '
                                  'leave the cell empty') from None
     return np.where(np.isnat(stamps), np.nan, stamps.astype(np.int64) * 1e-9)
+
+
+def _over_midnight(times: np.ndarray) -> np.ndarray:
+    """Return times of day (N,) s that go on behind midnight, where they fall by half a day."""
+    known = np.flatnonzero(np.isfinite(times))
+    days = np.cumsum(np.diff(times[known], prepend=times[known][:1]) < -43200.0)
+    times[known] += 86400.0 * days
+    return times
 
 
 def _places(told: Sequence[re.Match[str] | None], where: Callable[[int], str]) -> tuple[int, int]:

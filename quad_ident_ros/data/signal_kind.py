@@ -15,6 +15,7 @@ MANY = 0.01             # of the signals: fewer out of a range are glitches, mor
 LEAST_DUTY = 10000.0    # a sixth of 65535: less lifts nothing
 ALIKE = 'pwm', 'dshot'  # kinds of the same size
 NEAR_HOVER = 0.75, 1.33  # of the hover speed: thrust coefficients are off by less than half
+LIKE = 0.3              # of the strongest motor's usual signal, that the weakest one's exceeds
 APART = 1.15            # times in speed, a third in thrust: vehicle files may err by less
 FASTEST = {'speed': 4000.0, 'rpm': 60000.0}     # rad/s and rpm of rotors that fly anything
 
@@ -82,6 +83,19 @@ def in_newtons(values: np.ndarray, kinds: Sequence[str], weight: float, hover: f
     speeds = [ends[0] + of_full * (ends[1] - ends[0]) for share in shares
               for of_full in (share, np.sqrt(share))]
     return not any(NEAR_HOVER[0] < speed / hover < NEAR_HOVER[1] for speed in speeds)
+
+
+def are_signals(values: np.ndarray) -> bool:
+    """
+    Return whether columns (N, 4) named as thrust and moments are signals to four motors.
+
+    These are alike and not below 0; moments are about 0, for the vehicle turns to and fro.
+    """
+    on = values[np.isfinite(values).all(axis=1) & (values.max(axis=1) > 0)]
+    if not len(on) or np.mean(on < 0) > MANY:
+        return False
+    usual = np.median(on, axis=0)
+    return bool(usual.min() > LIKE * usual.max())
 
 
 def linear_in(kind: str) -> list[tuple[str, float, float]]:

@@ -11,6 +11,7 @@ import re
 
 import numpy as np
 
+from quad_ident_ros.data import motive
 from quad_ident_ros.data.csv import refuse_uneven
 from quad_ident_ros.data.dates import is_time, seconds_of
 from quad_ident_ros.data.plain_numbers import plain_numbers
@@ -23,8 +24,6 @@ SEPARATORS = (',', ';', '\t')
 VICON = ('objects', 'segments', 'trajectories', 'global angles', 'model outputs')
 """What is in a table of Vicon, by its first line; the second has the rate of the cameras."""
 BLANKS = ' '    # any number of them
-MOTIVE = ('world: Motive has y up unless its settings say otherwise: export with Z up and name '
-          'the columns in a mapping, or turn them there: py: {column: "Position Z", unit: -m}')
 _HEAD = 20      # lines in which the first numbers come
 MOST_COLUMNS = 4096    # wide logs have hundreds; each costs the guess a look
 _FEW = 0.1      # of the cells of a column: with more text it is one of text
@@ -44,7 +43,7 @@ class Table:
     them; notes: what was left out; how: what separates the cells, for messages; doubts: what the
     program that wrote the table leaves open; rate: Hz, of frames that are counted, or 0; text:
     name -> cells of the columns that hold text and are no numbers of a flight; before: what the
-    names of columns of one vehicle of several begin with.
+    names of columns of one vehicle of several begin with; bodies: what the lines above name.
     """
 
     columns: dict[str, np.ndarray]
@@ -55,6 +54,7 @@ class Table:
     rate: float = 0.0
     text: Mapping[str, Sequence[str]] = field(default_factory=dict)
     before: str = ''
+    bodies: tuple[str, ...] = ()
 
 
 def read_text(path: Path, separator: str = '') -> Table:
@@ -86,7 +86,7 @@ def read_text(path: Path, separator: str = '') -> Table:
         layout.separator, repr(layout.separator))
     return Table(columns, layout.units, (*notes, *told, *noted(text)),
                  f'{how}{", decimal commas" if layout.comma else ""}', layout.doubts, layout.rate,
-                 text)
+                 text, bodies=layout.bodies)
 
 
 @dataclass(frozen=True)
@@ -104,6 +104,7 @@ class _Layout:
     line: int
     doubts: tuple[str, ...]
     rate: float
+    bodies: tuple[str, ...]
 
     @property
     def delimiter(self) -> str | None:
@@ -120,9 +121,11 @@ def _layout(path: Path, rows: list[str], places: list[int], separator: str) -> _
     names = _under_headings(names, rows[first:first + _HEAD], separator)
     names = _with_index(names, rows[first:first + _HEAD], separator, comma)
     _refuse_doubled(path, places[head], names)
+    above = [_cells(row, separator) for row in rows[:head]] if motive.is_motive(rows[0]) else []
+    units |= motive.units_of(above, names)
     return _Layout(separator, comma, names, units, places[first],
-                   (MOTIVE,) if rows[0].startswith('Format Version') else (),
-                   _rate_of_frames(rows[:head]))
+                   (motive.DOUBT,) if above else (),
+                   _rate_of_frames(rows[:head]), motive.bodies_of(above))
 
 
 def _rate_of_frames(rows: list[str]) -> float:

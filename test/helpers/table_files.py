@@ -37,3 +37,32 @@ def others(record):
             **named(('acc_x', 'acc_y', 'acc_z'), record.stack(*FORCE)),
             **{f'm{k}': 1000 + record.columns[f'cmd{k}'] / 2 for k in range(1, 5)},
             'vbat': record.columns['vbat']}
+
+
+def motive(folder, t, bodies, unit='Meters', markers=0):
+    """
+    Write a take as Motive exports it, and return its path.
+
+    Args: t (N,) s; bodies: name -> (quaternions, scalar last (N, 4), places (N, 3)) as they are
+    exported; unit: of lengths; markers: how many each body has.
+    """
+    heads = {'Type': [], 'Name': [], 'ID': [], '': []}
+    axes, values = [], [np.arange(len(t)), t]
+    for number, (name, (turns, place)) in enumerate(bodies.items(), 1):
+        whose = [('Rigid Body', name, str(number), 'Rotation')] * 4
+        whose += [('Rigid Body', name, str(number), 'Position')] * 3
+        axes += 'XYZWXYZ'
+        values += [*turns.T, *place.T]
+        for k in range(1, markers + 1):
+            whose += [('Rigid Body Marker', f'{name}:Marker{k}', f'{number}:{k}', 'Position')] * 3
+            axes += 'XYZ'
+            values += [*(place + k).T]
+        for head, cells in zip(heads.values(), zip(*whose, strict=True), strict=True):
+            head += cells
+    rows = [f'Format Version,1.23,Take Name,one,Length Units,{unit},Coordinate Space,Global', '']
+    rows += [f',{head},{",".join(cells)}' for head, cells in heads.items()]
+    rows += [f'Frame,Time (Seconds),{",".join(axes)}']
+    rows += [','.join(map(repr, row)) for row in np.column_stack(values).tolist()]
+    path = folder / 'take.csv'
+    path.write_text('\n'.join(rows) + '\n')
+    return path

@@ -17,8 +17,9 @@ from quad_ident_ros.data.mapping import Mapping
 from quad_ident_ros.data.tabular import shown, Table
 
 STEPS = (clock.time, programs.blackbox_decode, programs.vicon, programs.qualisys,
-         motion.vectors, attitude.quaternion, attitude.angles, attitude.rates, motion.positions,
-         motion.forces, motion.axes, motion.velocities, motors.motors, motors.battery)
+         programs.crazyflie, motion.vectors, attitude.quaternion, attitude.angles, attitude.rates,
+         motion.positions, programs.motive, motion.forces, motion.axes, motion.velocities,
+         motors.motors, motors.battery)
 BEYOND = 1e30   # no quantity of a flight, in any unit, is as large
 
 
@@ -41,7 +42,6 @@ def guess(table: Table, given: Mapping | None = None) -> Guess:
                                  made.order, given.separator)
     if made.free:
         made.guess.said.append(f'not taken for anything: {shown(made.free)}')
-    made.guess.doubts += table.doubts
     if not made.guess.roles:
         made.guess.doubts.append('no column is a position, velocity, attitude, rate or specific '
                                  'force by its name')

@@ -57,8 +57,8 @@ def angles(draft: Draft) -> None:
     """Take roll, pitch and yaw where there is no quaternion."""
     if draft.attitude is not None:
         return
-    asked = [draft.one(pattern) for pattern in ANGLE.values()]
-    names = [name for name in asked if name is not None]
+    found = [draft.one(pattern, draft.states) for pattern in ANGLE.values()]
+    names = [name for name in found if name is not None]
     if len(names) < len(ANGLE):
         return
     values = draft.values(names)

@@ -9,9 +9,10 @@ import re
 import numpy as np
 
 from quad_ident_ros.data.columns import FORCE, POSITION, VELOCITY
-from quad_ident_ros.data.guess.names import AXES, BARE, NO_UNITS, NOT, plain, TURNED
+from quad_ident_ros.data.guess.names import AXES, BARE, NO_UNITS, NOT, plain, TURNED, WANTED
 from quad_ident_ros.data.guess.series import alike, filled, turned
 from quad_ident_ros.data.mapping import Column, factor_of, Mapping
+from quad_ident_ros.data.motive import is_marker
 from quad_ident_ros.data.tabular import Table
 from quad_ident_ros.data.unit_names import unit_by
 
@@ -54,7 +55,8 @@ class Draft:
             if said:
                 self.units[name] = unit_by(said)
         self.free = [name for name in table.columns if not NOT.search(self.names[name])
-                     and np.isfinite(table.columns[name]).sum() >= 2]
+                     and np.isfinite(table.columns[name]).sum() >= 2
+                     and not is_marker(name, table.bodies)]
         self.t: np.ndarray | None = None            # (N,) s
         self.attitude: np.ndarray | None = None     # (N, 4), scalar first
         # Columns of a group, or None, by the group.
@@ -122,9 +124,15 @@ class Draft:
                                      f'known are {", ".join(known)}, one for all')
         return unit
 
-    def one(self, pattern: str) -> str | None:
-        """Return the column of a pattern; the one of the shortest name where that is clear."""
-        found = [name for name in self.free if re.search(pattern, self.names[name])]
+    @property
+    def states(self) -> list[str]:
+        """The columns that are free and not named as states that are asked for."""
+        return [name for name in self.free if not WANTED.search(self.names[name])]
+
+    def one(self, pattern: str, names: Sequence[str] | None = None) -> str | None:
+        """Return the free column, or that of names, whose name has a pattern and is shortest."""
+        found = [name for name in (self.free if names is None else names)
+                 if re.search(pattern, self.names[name])]
         found.sort(key=lambda name: len(self.names[name]))
         if len(found) > 1 and len(self.names[found[0]]) == len(self.names[found[1]]):
             return None
@@ -163,7 +171,7 @@ class Draft:
                    ) -> dict[tuple[str, str], dict[str, str]]:
         """Return the columns whose names are of a group: what is before them, axis -> name."""
         found: dict[tuple[str, str], dict[str, str]] = {}
-        for name in self.free:
+        for name in self.states:
             for axis in entries:
                 match = re.search(AXES[group].format(axis), self.names[name])
                 if match and not (group in (FORCE, VELOCITY) and TURNED.search(

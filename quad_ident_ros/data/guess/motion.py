@@ -16,6 +16,7 @@ from quad_ident_ros.gravity import GRAVITY
 from quad_ident_ros.model.attitude import rotate
 
 HOVERS = 0.6, 1.6       # of gravity: the usual specific force of what flies
+ONE_WAY = 0.5           # of its size, that its median along one direction is: thrust is along z
 QUICK = 100.0           # m/s: multirotors do under 60, so faster ones are in mm
 BELOW = 0.3             # of the greatest depth or height that the other one may be: ground is 0
 BETTER = 1.5            # times that the wrong axes are further off than the right ones
@@ -28,7 +29,8 @@ def vectors(draft: Draft) -> None:
     draft.found = {group: draft.trio(group, 'xyz') or draft.numbered(group)
                    for group in (POSITION, VELOCITY, RATE, FORCE)}
     if draft.found[RATE] is None:
-        turning = [draft.one(rf'(^|_){axis}_?(rate|speed|vel)$') for axis in TURNING]
+        turning = [draft.one(rf'(^|_){axis}_?(rate|speed|vel)$', draft.states)
+                   for axis in TURNING]
         names = [name for name in turning if name is not None]
         if len(names) == len(TURNING):
             draft.found[RATE] = names
@@ -54,19 +56,23 @@ def forces(draft: Draft) -> None:
     names = draft.found[FORCE]
     if names is None or any(name not in draft.free for name in names):
         return
-    usual = float(np.nanmedian(np.linalg.norm(draft.values(names), axis=1)))
+    values = draft.values(names)
+    usual = float(np.nanmedian(np.linalg.norm(values, axis=1)))
+    steady = float(np.linalg.norm(np.nanmedian(values, axis=0))) > ONE_WAY * usual
     said = draft.said_unit('ax', names, UNITS['m/s^2'])
     if said:
         usual *= factor_of('ax', said) / GRAVITY
     for unit, one in ((said, 1.0),) if said else (('m/s^2', GRAVITY), ('g', 1.0), ('mg', 1000.0)):
-        if HOVERS[0] * one < usual < HOVERS[1] * one:
+        if steady and HOVERS[0] * one < usual < HOVERS[1] * one:
             draft.take(FORCE, names, unit, role='specific_force',
                        said=f'specific force in {unit}')
             return
-    if usual < HOVERS[0]:
+    if usual < HOVERS[0] or not steady:
         draft.guess.said.append(f'{together(names)}: not taken, an acceleration without '
                                 'gravity is not a specific force')
         draft.taken(names, '')
+        draft.found[FORCE] = draft.trio(FORCE, 'xyz') or draft.numbered(FORCE)
+        forces(draft)
         return
     draft.guess.doubts.append(f'ax: the unit of {together(names)}, {usual:.3g} as a rule')
 
@@ -116,6 +122,7 @@ def velocities(draft: Draft) -> None:
         fast = float(np.nanquantile(np.abs(values), 0.9))
         place = draft.columns['px'].unit if 'px' in draft.columns else ''
         unit = 'm/s' if fast <= QUICK else 'cm/s' if place == 'cm' else 'mm/s'
+        unit = _nearest(draft, values, unit)
     frame, said = 'world', 'as no stream contradicts it'
     if any('body' in draft.names[name] for name in names):
         frame, said = 'body', 'by its name'
@@ -178,6 +185,14 @@ def _by_tilt(draft: Draft, names: Sequence[str]) -> str:
         return ''
     return next((unit for unit, factor in (('m', 1.0), ('cm', 100.0), ('mm', 1000.0))
                  if factor / NEAREST < ratio < factor * NEAREST), '')
+
+
+def _nearest(draft: Draft, values: np.ndarray, unit: str) -> str:
+    """Return the unit in which velocities (N, 3) go with the other streams, that given if open."""
+    off = {one: min(found) for one in ('m/s', 'cm/s', 'mm/s')
+           if (found := _off(draft, values * factor_of('vx', one))) is not None}
+    best = min(off, key=off.__getitem__, default=unit)
+    return best if off and BETTER * off[best] < off[unit] else unit
 
 
 def _off(draft: Draft, speed: np.ndarray) -> list[float] | None:

@@ -22,7 +22,7 @@ from quad_ident_ros.data.guess.names import (
 from quad_ident_ros.data.mapping import factor_of, UNITS
 from quad_ident_ros.data.motor_order import about_motors, quad
 from quad_ident_ros.data.record import INPUTS
-from quad_ident_ros.data.signal_kind import kinds_of, TITLES
+from quad_ident_ros.data.signal_kind import are_signals, kinds_of, TITLES
 
 AROUND = (1, -1), (-1, -1), (-1, 1), (1, 1)     # forward, left: front right to front left
 SPEEDS = 'rad/s', 'rpm', 'krpm', 'Hz'
@@ -45,8 +45,8 @@ def motors(draft: Draft) -> None:
         if np.nanmin(values) >= 0 and np.nanmedian(values) * factor_of('rotor1', unit) > SLOWEST:
             draft.take([f'rotor{k}' for k in range(1, len(measured) + 1)], measured, unit,
                        role='rotors', said=f'measured rotor speeds in {unit}')
-    if set(INPUTS) <= set(draft.free) and all(column.names == (role,)
-                                              for role, column in draft.columns.items()):
+    if set(INPUTS) <= set(draft.free) and not are_signals(draft.logged(INPUTS)) and all(
+            column.names == (role,) for role, column in draft.columns.items()):
         draft.take(INPUTS, INPUTS, role='commands', said='thrust and moments, for the other '
                    'columns have the names of a flight record')
         return

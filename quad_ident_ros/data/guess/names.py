@@ -19,7 +19,7 @@ NO_UNITS = frozenset(('', '-', '1', 'world', 'body', 'global', 'local', 'inertia
 """What stands in brackets behind names, or in a line of units, and is none."""
 
 NOT = re.compile(r'(^|_)(sp|setpoint|des|desired|ref|reference|target|goal|cov|covariance|var|'
-                 r'std|err|error|raw|bias|offset|mag)(_|$)|^b_[awg]_')
+                 r'std|err|error|raw|bias|offset|mag|wind)(_|$)|^b_[awg]_')
 """Of names that are not what was measured; b_w and b_a are biases."""
 
 _IN = r'(?:_[wbiesgrmv]{{1,2}}){{0,2}}'
@@ -30,9 +30,9 @@ AXES = {
               r'drone|uav|quad|robot|rigid_body|ground_truth|gt|odom|pose)_?{}$',
     VELOCITY: rf'(^|_)(v{_IN}|vel|velocity|speed|linear_velocity|twist_linear|linear)_?{{}}$',
     FORCE: rf'(^|_)(a{_IN}|acc|accel|accelerometer|accelerations?|linear_acceleration|'
-           r'specific_force)(_b|_body|_m_s2)?_?{}$',
+           r'specific_force)(_b|_body|_m_s2|_xyz)?_?{}$',
     RATE: rf'(^|_)(w{_IN}|gyro|gyr|gyroscope|gyro_rad|omega|om|rate|rates|body_?rates?|ang_vel|'
-          r'angvel|angular_velocity|angular_rate|twist_angular|angular)(_b|_body)?_?{}$',
+          r'angvel|angular_velocity|angular_rate|twist_angular|angular)(_b|_body|_xyz)?_?{}$',
     QUATERNION: rf'(^|_)(q{_IN}|quat|quaternion|orientation|rotation|att_q|attitude_q)_?{{}}$',
 }
 TURNED = re.compile(r'(^|_)(ang|angular|gyro|rot)')
@@ -67,8 +67,13 @@ MOTOR = re.compile(r'(^|_)(cmd|command|motor_cmd|m|mot|mot_m|motor|motors|motor_
                    r'output|outputs|control|actuator|action|throttle|thrust|duty|rc_?out|rcou_c|'
                    r'servo)'
                    rf'(?:_(?:data|control|velocities|angular_velocities|{_WORDS}))?_?(\d{{1,2}})$')
-COMMANDED = re.compile(r'(^|_)(cmds?|commands?|commanded|req)(_|$)')
+_ASKED = r'(^|_)(cmds?|commands?|commanded|req)(_|$)'
+COMMANDED = re.compile(_ASKED)
 """Of rotor speeds that are asked for, not measured."""
+
+WANTED = re.compile(rf'{_ASKED}|(^|_)(planned|inputs?)_|(^|_)(controller|ctrl_?target)_'
+                    r'(v?[xyz]|q[wxyz]|(roll|pitch|yaw)(_rate)?)$')
+"""Of states that are asked for; the last are log variables of a Crazyflie."""
 
 REPORTED = re.compile(r'(^|_)esc_?\d')
 """Names of motors whose speeds, where named so, a speed controller has measured."""
@@ -103,6 +108,7 @@ def plain(name: str) -> tuple[str, str]:
         name, said = name[:match.start()], match.group(1).strip().lower()
     name = re.sub(r'([a-z0-9])([A-Z])', r'\1_\2', name.strip())
     name = re.sub(r'[^a-z0-9]+', '_', without_accents(name).lower()).strip('_')
+    name = re.sub(r'_0(\d)$', r'_\1', name)      # PlotJuggler counts .00, .01, ...
     match = ENDING.search(name)
     if not said and match and len(name) > len(match.group()):
         name, said = name[:match.start()], match.group(1)

@@ -2,16 +2,22 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tables of programs whose names of columns mean something else than they say."""
 
+from collections.abc import Iterable
+from dataclasses import replace
+import re
+
 import numpy as np
 
 from quad_ident_ros.data.betaflight import ORDER, QUAD_X
-from quad_ident_ros.data.columns import FORCE, RATE
+from quad_ident_ros.data.columns import FORCE, POSITION, RATE
 from quad_ident_ros.data.guess.draft import Draft, together
 from quad_ident_ros.data.guess.motion import HOVERS
 from quad_ident_ros.data.guess.series import is_unit, unit_length
 from quad_ident_ros.data.motor_order import about_motors
-from quad_ident_ros.data.record import QUATERNION
+from quad_ident_ros.data.quality import frames
+from quad_ident_ros.data.record import faulty, FlightRecord, QUATERNION
 
+_CRAZYFLIE = re.compile(r'motor_m[1-4]$|state_estimate_|stabilizer_|kalman_|pm_vbat$')
 RAW, ONE_G = 'g/2048', 2048.0   # of accelerometers of 16 bits over +-16 g, as Betaflight sets them
 
 
@@ -58,6 +64,81 @@ def qualisys(draft: Draft) -> None:
             f'attitude: {together(angles)} of Qualisys are turns about x, y and z in this order, '
             'not yaw, pitch and roll, or as QTM is set; add columns qw, qx, qy, qz, of the '
             'rotation matrix Rot[0] to Rot[8]')
+
+
+def motive(draft: Draft) -> None:
+    """
+    Turn the pose in a table of Motive where the vehicle leans as with y up, or leave it in doubt.
+
+    The world and the bodies have y up unless the program is set otherwise, which no line shows.
+    """
+    if not draft.table.doubts:
+        return
+    up = _axis_up(draft)
+    if not up:
+        draft.guess.doubts += draft.table.doubts
+        return
+    draft.guess.said.append(f'{up} is up, by how the vehicle leans')
+    if up == 'y':
+        found, q = draft.columns, draft.attitude
+        found['py'], found['pz'] = (replace(found['pz'], unit=f'-{found["pz"].unit or "m"}'),
+                                    found['py'])
+        found['qy'], found['qz'] = replace(found['qz'], unit='-1'), found['qy']
+        assert q is not None    # else no axis is known to be up
+        draft.attitude = np.column_stack([q[:, 0], q[:, 1], -q[:, 3], q[:, 2]])
+
+
+def _axis_up(draft: Draft) -> str:
+    """Return the axis, y or z, by which the pose leans as what flies does, '' in doubt."""
+    if draft.t is None or draft.attitude is None or not {*POSITION, *QUATERNION} <= set(
+            draft.columns):
+        return ''
+    there = [draft.columns[name].names[0] for name in (*POSITION, *QUATERNION)]
+    seen = np.isfinite(draft.logged(there)).all(axis=1)
+    columns = dict(zip((*POSITION, *QUATERNION), np.hstack(
+        [draft.scaled(POSITION), draft.attitude])[seen].T, strict=True))
+    t = draft.t[seen]
+    good = ~faulty(t, columns)
+    if good.sum() < 2:
+        return ''
+    return frames.axis_up(FlightRecord(t[good], {
+        name: values[good] for name, values in columns.items()}, {}))[0]
+
+
+def crazyflie(draft: Draft) -> None:
+    """
+    Name log variables of a Crazyflie by what they are, in their units.
+
+    The state of its Kalman filter has the velocity in body axes as PX, PY, PZ; stateEstimateZ has
+    mm, mm/s and mrad/s, the pitch rate with the other sign; its gyro is in deg/s where its
+    accelerometer is in g. Source: log variables in Bitcraze's documentation.
+    """
+    columns = {plain: name for name, plain in draft.names.items()}
+
+    def group(pattern: str, axes: Iterable[str] = 'xyz') -> list[str]:
+        names = [columns.get(pattern.format(axis), '') for axis in axes]
+        return names if all(name in draft.free for name in names) else []
+
+    for pattern, meant in (('kalman_state_p{}', 'body_velocity_{}'),
+                           ('kalman_state_{}', 'kalman_position_{}')):
+        for axis, name in zip('xyz', group(pattern), strict=False):
+            draft.names[name] = meant.format(axis)
+    whole = {'': 'mm', 'v': 'mm/s'}
+    for before, unit in whole.items():
+        for axis, name in zip('xyz', group(f'state_estimate_z_{before}{{}}'), strict=False):
+            if f'state_estimate_{before}{axis}' in columns:
+                draft.taken([name], '')
+            draft.names[name], draft.units[name] = f'state_estimate_{before}{axis}', unit
+    gyro, force = group('gyro_{}'), group('acc_{}')
+    turning = group('state_estimate_z_rate_{}', ('roll', 'pitch', 'yaw'))
+    if turning and not gyro:
+        draft.take(RATE, turning, 'mrad/s', role='rate', said='body rate in mrad/s, pitch with '
+                   'the other sign')
+        draft.columns['wy'] = replace(draft.columns['wy'], unit='-mrad/s')
+    if gyro and force and any(map(_CRAZYFLIE.match, columns)):
+        usual = float(np.nanmedian(np.linalg.norm(draft.values(force), axis=1)))
+        if HOVERS[0] < usual < HOVERS[1] and not any(draft.units[name] for name in gyro):
+            draft.units.update(dict.fromkeys(gyro, 'deg/s'))
 
 
 def blackbox_decode(draft: Draft) -> None:

@@ -39,10 +39,10 @@ def ratio_of(one: np.ndarray, other: np.ndarray) -> float | None:
 
 
 def is_unit(q: np.ndarray) -> bool:
-    """Return whether quaternions (N, 4) have the length 1."""
+    """Return whether quaternions (N, 4) have the length 1, but for rows of zeros: no tracking."""
     norm = np.linalg.norm(q, axis=-1)
-    norm = norm[np.isfinite(norm)]
-    return len(norm) > 1 and np.mean(np.abs(norm - 1.0) < UNIT) > MOSTLY
+    norm = norm[np.isfinite(norm) & (norm > 0.0)]
+    return len(norm) > 1 and bool(np.mean(np.abs(norm - 1.0) < UNIT) > MOSTLY)
 
 
 def unit_length(q: np.ndarray) -> np.ndarray:

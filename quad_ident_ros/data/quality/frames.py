@@ -159,17 +159,18 @@ def world(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     return _motion(grid, attitude)
 
 
-def y_up(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
+def axis_up(record: FlightRecord) -> tuple[str, float, float]:
     """
-    Find a world whose y axis is up, with a body whose own y is up, as motion capture has them.
+    Return which axis points up in the world and in the body alike, z or y, or '' if that is open.
 
-    The thrust is along the up axis of the body: what that leans by is how the position bends.
+    Behind it the correlations of the lean with the force, with z up and with y up: the thrust is
+    along the up axis of the body, so what that leans by is how the position bends.
     """
     grid, attitude = Grid.of(record), best_reading(record)[1]
     if grid is None or attitude is None or not record.has('px', 'py', 'pz'):
-        return []
+        return '', 0.0, 0.0
     bend = grid.derivative(grid.derivative(grid.signal('px', 'py', 'pz')))
-    alike, size, stands = [], 0.0, 0.0
+    alike, fits = [], []
     for up in ([0.0, 0.0, 1.0], [0.0, 1.0, 0.0]):
         level = np.flatnonzero(np.array(up) == 0.0)
         force = bend + GRAVITY * np.array(up)
@@ -179,15 +180,24 @@ def y_up(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
                       for values in (lean, force))
         likeness, size = correlation(one - one.mean(axis=0), other - other.mean(axis=0))
         alike.append(likeness)
-        stands = float(np.median(lean @ up))
-    # On a wide circle, nose first, the y axis of the body is along the force, too, but level.
-    if not (alike[1] > LEANS and alike[0] < UPRIGHT and stands > STANDS
-            and LEAN_SIZE[0] < size < LEAN_SIZE[1]):
+        # On a wide circle, nose first, the y axis of the body is along the force, too, but level.
+        fits.append(likeness > LEANS and float(np.median(lean @ up)) > STANDS
+                    and LEAN_SIZE[0] < size < LEAN_SIZE[1])
+    for k, axis in enumerate('zy'):
+        if fits[k] and alike[1 - k] < UPRIGHT:
+            return axis, alike[0], alike[1]
+    return '', alike[0], alike[1]
+
+
+def y_up(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
+    """Find a world whose y axis is up, with a body whose own y is up, as motion capture has."""
+    up, with_z, with_y = axis_up(record)
+    if up != 'y':
         return []
     return [Finding(
         'frame_y_up', 'error', 'position and attitude',
         'the vehicle leans into the way that it goes only where y is the axis that points up '
-        f'(correlation {alike[1]:.2f}, with z up {alike[0]:.2f})',
+        f'(correlation {with_y:.2f}, with z up {with_z:.2f})',
         'export it with z up, or name the columns in a mapping: py and qy the z of the file with '
         'the other sign (unit: -m or -mm; "-1"), pz and qz its y; likewise a velocity')]
 

@@ -18,9 +18,10 @@ from quad_ident_ros.data.guess import Guess, guess
 from quad_ident_ros.data.mapping import ATTITUDE, factor_of, Mapping
 from quad_ident_ros.data.mapping_text import flow
 from quad_ident_ros.data.readers.base import Content, content_of, Reader
-from quad_ident_ros.data.record import EULER, FlightRecord, QUATERNION, unit
+from quad_ident_ros.data.record import EULER, FlightRecord, INPUTS, QUATERNION, unit
+from quad_ident_ros.data.signal_kind import are_signals
 from quad_ident_ros.data.tabular import read_text, shown, Table
-from quad_ident_ros.data.text_lines import is_packed, rows_of
+from quad_ident_ros.data.text_lines import first_rows, is_packed, rows_of
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import Vehicle
 
@@ -31,6 +32,7 @@ STATES = {'pose', 'velocity', 'rate', 'specific_force'}
 FALL = 1.0          # s by which a time falls where another recording begins; less is disorder
 MOST_FALLS = 100    # recordings in a table; a column that falls more often is no time
 _HEAD = 1 << 16     # bytes that the first line has its end in
+_LINES = 20_000     # that show whether columns are inputs or signals: a flight has begun in them
 
 
 def read(path: Path, mapping: Mapping | None = None,
@@ -120,7 +122,7 @@ def is_record(path: Path) -> bool:
         return False
     ours = {_group(name) for name in names if unit(name) is not None} - {''}
     if all(unit(name) is not None for name in names):
-        return True
+        return not set(INPUTS) <= set(names) or not are_signals(_inputs(path, names))
     # Names of others beside t, or ours: theirs if they say more about a flight than ours do.
     try:
         table = read_text(path)
@@ -133,6 +135,19 @@ def is_record(path: Path) -> bool:
     if theirs <= ours or found.doubts and not (theirs - ours) & {'pose', 'attitude'}:
         return True
     return not ours and not set(found.roles) & STATES
+
+
+def _inputs(path: Path, names: list[str]) -> np.ndarray:
+    """Return the numbers (N, 4) of u1 to u4 in the first lines of a table."""
+    begin = first_rows(path, _LINES)
+    places, found = [names.index(name) for name in INPUTS], []
+    for row in begin[0][1:] if begin else ():
+        cells = row.split(',')
+        try:
+            found.append([float(cells[place]) for place in places])
+        except (IndexError, ValueError):
+            continue
+    return np.reshape(found, (-1, len(INPUTS)))
 
 
 def _group(name: str) -> str:

@@ -8,7 +8,7 @@ import pyarrow
 from pyarrow import parquet
 import pytest
 from reader_checks import refused
-from table_files import PLACE, Q
+from table_files import motive, PLACE, Q
 
 from quad_ident_ros.data.load import contents_of, load, load_all
 from quad_ident_ros.data.mapping import mapping_from
@@ -122,6 +122,19 @@ def test_two_objects_of_vicon_are_a_flight_of_each(tmp_path):
     found = load_all(path)
     check(found)
     assert [record.info['name'] for record in found] == ['swarm_cf1', 'swarm_cf2']
+
+
+@pytest.mark.parametrize('names', [('Alice', 'Bob'), ('cf1', 'cf2')])
+def test_two_bodies_of_motive_are_a_flight_of_each(tmp_path, names):
+    """Their markers are no vehicles."""
+    bodies = {name: (record.stack('qx', 'qy', 'qz', 'qw'), record.stack(*PLACE))
+              for name, record in zip(names, FLIGHTS.values(), strict=True)}
+    path = motive(tmp_path, 0.02 * np.arange(400), bodies, markers=2)
+    found = load_all(path)
+    check(found)
+    assert [record.info['name'] for record in found] == [f'take_{name}' for name in names]
+    assert [stream.name for stream in contents_of(path)[1]] == [f'rows of {name}'
+                                                                for name in names]
 
 
 def test_of_two_in_formation_none_is_taken_without_a_word(tmp_path):

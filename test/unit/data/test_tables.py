@@ -197,6 +197,20 @@ def test_a_flight_record_between_semicolons_keeps_its_thrust_and_moments(tmp_pat
     assert not read.has('output1') and 'thrust and moments' in said(read)
 
 
+@pytest.mark.parametrize('rest', [0.0, 4.0])
+@pytest.mark.parametrize(('low', 'high'), [(1000.0, 2000.0), (0.0, 1.0), (0.0, 65535.0)])
+def test_signals_named_as_thrust_and_moments_are_outputs(tmp_path, rest, low, high):
+    """Every other name is one of a flight record; moments would be about 0."""
+    share = FLIGHT.stack('cmd1', 'cmd2', 'cmd3', 'cmd4') / 1700
+    share[FLIGHT.t - FLIGHT.t[0] < rest] = 0.0
+    ours = {'t': FLIGHT.t, **{name: FLIGHT.columns[name] for name in (*PLACE, *Q)}}
+    signals = np.round(low + (high - low) * share, 4)
+    record = load(table(tmp_path, {**ours, **named(('u1', 'u2', 'u3', 'u4'), signals)}))
+    np.testing.assert_allclose(record.stack('output1', 'output2', 'output3', 'output4'), signals)
+    inputs = named(('u1', 'u2', 'u3', 'u4'), FLIGHT.stack(*FORCE[::-1], 'wz') * (rest == 0.0))
+    assert load(table(tmp_path, {**ours, **inputs})).has('u1', 'u2', 'u3', 'u4')
+
+
 def test_a_line_of_units_and_lines_above_the_header(tmp_path):
     columns = others()
     path = table(tmp_path, columns, name='f.csv.gz', above='# made by a program\n# 2026\n')

@@ -3,6 +3,7 @@
 """Tables as certain programs write them, held against the flight that is in them."""
 
 from dataclasses import replace
+from datetime import datetime, timedelta
 
 from flightmaker import (
     changed,
@@ -16,7 +17,7 @@ from flightmaker import (
 import numpy as np
 import pytest
 from reader_checks import refused
-from table_files import FORCE, named, PLACE, Q, RATE, SPEED, table
+from table_files import FORCE, motive, named, PLACE, Q, RATE, SPEED, table
 
 from quad_ident_ros.data.columns import from_euler
 from quad_ident_ros.data.differentiated import with_motion
@@ -24,7 +25,7 @@ from quad_ident_ros.data.load import load, load_all
 from quad_ident_ros.data.mapping import mapping_from
 from quad_ident_ros.data.quality import findings
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.model.attitude import euler_from_quaternion, product
+from quad_ident_ros.model.attitude import conjugate, euler_from_quaternion, product, rotate
 from quad_ident_ros.model.dynamics import course_of, states_of
 
 FLIGHT = flight(seconds=10.0, rate=100.0)
@@ -113,6 +114,80 @@ def test_a_pitch_whose_sign_the_gyro_contradicts_is_turned(tmp_path):
     assert any('pitch with the other sign' in note for note in read.info['notes'])
 
 
+@pytest.mark.parametrize('names', ['wxyz', '0123'])
+def test_rows_of_zeros_before_tracking_are_no_attitude(tmp_path, names):
+    """Programs of motion capture write zeros where they do not see the body."""
+    later = (T >= 3.0)[:, None]
+    path = table(tmp_path, {'time': T, **named(['x', 'y', 'z'], later * FLIGHT.stack(*PLACE)),
+                            **named([f'q{name}' for name in names], later * FLIGHT.stack(*Q)),
+                            **columns('gyro_', 'xyz', RATE)})
+    read = load(path)
+    assert read.t[0] == pytest.approx(3.0)
+    same(read, PLACE, Q, RATE)
+
+
+DEGREES = np.degrees(euler_from_quaternion(FLIGHT.stack(*Q))) * [1.0, -1.0, 1.0]
+CRAZYFLIE = {'Timestamp': np.round(1000 * T), **columns('stateEstimate.', 'xyz', PLACE),
+             **{f'motor.m{k}': np.round(30 * FLIGHT.columns[f'cmd{k}']) for k in range(1, 5)}}
+ANGLES = named([f'stateEstimate.{angle}' for angle in ('roll', 'pitch', 'yaw')], DEGREES)
+LATE = np.roll(np.arange(len(T)), 20)
+
+
+@pytest.mark.parametrize(('names', 'values'), [
+    (['cmd_vel_x', 'cmd_vel_y', 'cmd_vel_z'], FLIGHT.stack(*SPEED)),
+    (['command velocity x', 'command velocity y', 'command velocity z'], FLIGHT.stack(*SPEED)),
+    (['cmd_roll', 'cmd_pitch', 'cmd_yaw'], DEGREES),
+    (['cmd_roll_rate', 'cmd_pitch_rate', 'cmd_yaw_rate'], FLIGHT.stack(*RATE)),
+    (['controller.roll', 'controller.pitch', 'controller.yaw'], DEGREES),
+    (['controller.rollRate', 'controller.pitchRate', 'controller.yawRate'], FLIGHT.stack(*RATE)),
+    (['planned_vel_x', 'planned_vel_y', 'planned_vel_z'], FLIGHT.stack(*SPEED)),
+    (['wind_vx', 'wind_vy', 'wind_vz'], FLIGHT.stack(*SPEED)),
+    (['ctrltarget.vx', 'ctrltarget.vy', 'ctrltarget.vz'], FLIGHT.stack(*SPEED))])
+def test_states_that_are_asked_for_are_none_that_were_measured(tmp_path, names, values):
+    """They come before what they ask for; controller.roll was taken in place of the attitude."""
+    read = load(table(tmp_path, {**CRAZYFLIE, **ANGLES, **named(names, values[LATE])}))
+    same(read, PLACE, Q)
+    assert not read.has('vx') and not read.has('wx') and read.has('output4')
+    alone = {name: values for name, values in CRAZYFLIE.items() if name not in ANGLES}
+    read = load(table(tmp_path, {**alone, **named(names, values[LATE])}))
+    assert not any(read.has(name) for name in ('vx', 'wx', 'qw'))
+
+
+def test_the_kalman_filter_of_a_crazyflie_has_its_velocity_in_the_body(tmp_path):
+    """It is named PX, PY, PZ, as a position would be."""
+    found = {name: values for name, values in CRAZYFLIE.items() if 'stateEstimate' not in name}
+    found |= named([f'kalman.q{k}' for k in range(4)], FLIGHT.stack(*Q))
+    found |= named([f'kalman.stateP{axis}' for axis in 'XYZ'], world_velocity_in_body(FLIGHT))
+    same(load(table(tmp_path, found)), SPEED, Q)
+    same(load(table(tmp_path, {**found, **columns('kalman.state', 'XYZ', PLACE)})),
+         PLACE, SPEED, Q)
+
+
+@pytest.mark.parametrize('both', [False, True])
+def test_the_packed_state_of_a_crazyflie_has_units_of_its_own(tmp_path, both):
+    found = {**CRAZYFLIE, **ANGLES} if both else {
+        **{name: values for name, values in CRAZYFLIE.items() if 'stateEstimate' not in name},
+        **columns('q', 'wxyz', Q)}
+    for before, group, size in (('', PLACE, 1000), ('v', SPEED, 1000)):
+        found |= named([f'stateEstimateZ.{before}{axis}' for axis in 'xyz'],
+                       np.round(size * FLIGHT.stack(*group)))
+    found |= named([f'stateEstimateZ.rate{axis}' for axis in ('Roll', 'Pitch', 'Yaw')],
+                   np.round(1000 * FLIGHT.stack(*RATE) * [1, -1, 1]))
+    same(load(table(tmp_path, found)), PLACE, SPEED, RATE, Q, atol=1e-3)
+
+
+@pytest.mark.parametrize(('weight', 'turn'), [(9.80665, np.pi / 180), (1.0, 1.0)])
+def test_a_calm_gyro_of_a_crazyflie_is_in_degrees_where_its_accelerometer_is_in_g(
+        tmp_path, weight, turn):
+    """Below 12 deg/s its size shows nothing, and there is no attitude to hold it against."""
+    motors = {name: values for name, values in CRAZYFLIE.items() if 'stateEstimate' not in name}
+    rate = 0.1 * FLIGHT.stack(*RATE)
+    read = load(table(tmp_path, {**motors, **named(['gyro.x', 'gyro.y', 'gyro.z'], rate / turn),
+                                 **named(['acc.x', 'acc.y', 'acc.z'],
+                                         FLIGHT.stack(*FORCE) / weight)}))
+    np.testing.assert_allclose(read.stack(*RATE), rate, atol=1e-9)
+
+
 def test_a_minus_before_a_unit_turns_a_column(tmp_path):
     """Motion capture with y up: east, up, south."""
     found = {'time': T, 'a': FLIGHT.columns['px'], 'b': FLIGHT.columns['pz'],
@@ -125,41 +200,59 @@ def test_a_minus_before_a_unit_turns_a_column(tmp_path):
     same(load(table(tmp_path, found), mapping), PLACE, Q)
 
 
-def test_what_motive_writes_is_told_and_asked_for_its_axes(tmp_path):
-    names = ['Rotation'] * 4 + ['Position'] * 3
-    above = ('Format Version,1.23,Take Name,one,Length Units,Meters,Coordinate Space,Global\n\n'
-             + ''.join(f',{head},{",".join(cells)}\n' for head, cells in (
-                 ('Type', 7 * ['Rigid Body']), ('Name', 7 * ['quad']), ('ID', 7 * ['1'])))
-             + f',,{",".join(names)}\nFrame,Time (Seconds),X,Y,Z,W,X,Y,Z\n')
-    rows = np.column_stack([np.arange(len(T)), T, FLIGHT.stack(*XYZW), FLIGHT.stack(*PLACE)])
-    path = tmp_path / 'take.csv'
-    path.write_text(above + '\n'.join(','.join(map(repr, row)) for row in rows.tolist()) + '\n')
-    refused(path, 'Motive', 'Z up', '--write-mapping')
-    mapping = mapping_from({'quaternion': 'xyzw', 'columns': {
-        't': 'Time (Seconds)', 'q': [f'Rotation {letter}' for letter in 'XYZW'],
-        'px': 'Position X', 'py': 'Position Y', 'pz': 'Position Z'}}, 'a test')
-    same(load(path, mapping), PLACE, Q)
+def test_plotjuggler_counts_entries_of_px4_in_two_digits(tmp_path):
+    """Beside them is the acceleration of the estimator, which has no gravity."""
+    moved = ned(rotate(FLIGHT.stack(*Q), FLIGHT.stack(*FORCE)) - [0.0, 0.0, 9.81])
+    found = {'__time': T, **named([f'/vehicle_attitude/q.0{k}' for k in range(4)],
+                                  ned_attitude(FLIGHT.stack(*Q)))}
+    for name, group, turn in (('vehicle_local_position/{}', PLACE, ned),
+                              ('vehicle_local_position/v{}', SPEED, ned),
+                              ('vehicle_angular_velocity/xyz.0{}', RATE, frd),
+                              ('vehicle_acceleration/xyz.0{}', FORCE, frd)):
+        axes = 'xyz' if name.endswith('{}') and '.0' not in name else '012'
+        found |= named([f'/{name.format(axis)}' for axis in axes], turn(FLIGHT.stack(*group)))
+    found |= named([f'/vehicle_local_position/a{axis}' for axis in 'xyz'], moved)
+    same(load(table(tmp_path, found)), PLACE, SPEED, Q, RATE, FORCE)
 
 
-def test_markers_beside_a_body_of_motive_are_told_apart(tmp_path):
-    """A take has the markers of the body as well, whose columns have the names of its own."""
-    kinds = 7 * ['Rigid Body'] + 6 * ['Rigid Body Marker']
-    owners = 7 * ['quad'] + 3 * ['quad:Marker1'] + 3 * ['quad:Marker2']
-    names = ['Rotation'] * 4 + ['Position'] * 9
-    above = ('Format Version,1.23,Take Name,one,Length Units,Meters\n\n'
-             + ''.join(f',{head},{",".join(cells)}\n' for head, cells in (
-                 ('Type', kinds), ('Name', owners), ('ID', 7 * ['1'] + 3 * ['2'] + 3 * ['3'])))
-             + f',,{",".join(names)}\nFrame,Time (Seconds),X,Y,Z,W{3 * ",X,Y,Z"}\n')
-    place = FLIGHT.stack(*PLACE)
-    rows = np.column_stack([np.arange(len(T)), T, FLIGHT.stack(*XYZW), place, place + 1.0,
-                            place - 1.0])
-    path = tmp_path / 'take.csv'
-    path.write_text(above + '\n'.join(','.join(map(repr, row)) for row in rows.tolist()) + '\n')
+def with_y_up(turns, place):
+    """Return quaternions, scalar last, and places with z up as motion capture has them: y up."""
+    x, y, z, w = turns.T
+    return np.column_stack([x, z, -y, w]), place[:, [0, 2, 1]] * [1.0, 1.0, -1.0]
+
+
+@pytest.mark.parametrize('up', ['y', 'z'])
+@pytest.mark.parametrize(('unit', 'factor'), [('Meters', 1.0), ('Centimeters', 100.0)])
+def test_the_axis_that_is_up_in_a_take_of_motive_is_told_by_how_the_vehicle_leans(
+        tmp_path, up, unit, factor):
+    pose = FLIGHT.stack(*XYZW), factor * FLIGHT.stack(*PLACE)
+    path = motive(tmp_path, T, {'quad': with_y_up(*pose) if up == 'y' else pose}, unit, markers=2)
+    read = load(path)
+    same(read, PLACE, Q)
+    assert f'{up} is up, by how the vehicle leans' in read.info['notes']
+    assert 'frame_y_up' not in [one.code for one in findings(read, None)]
+
+
+def test_a_take_of_motive_may_have_rows_out_of_order_and_without_the_body(tmp_path):
+    turns, place = with_y_up(FLIGHT.stack(*XYZW), FLIGHT.stack(*PLACE))
+    place[200:260] = np.nan
+    order = np.arange(len(T))
+    order[[3, 4, 5, 6]] = 6, 4, 3, 5
+    same(load(motive(tmp_path, T[order], {'quad': (turns[order], place[order])})), PLACE, Q)
+
+
+def test_a_take_of_motive_that_hovers_is_asked_for_its_axes(tmp_path):
+    """Nothing leans in it, so any axis may be the one that is up."""
+    place = np.tile(FLIGHT.stack(*PLACE)[0], (len(T), 1))
+    turns = np.tile([0.0, 0.0, 0.0, 1.0], (len(T), 1))
+    path = motive(tmp_path, T, {'quad': (turns, place)}, markers=2)
     refused(path, 'Motive', 'Z up', '--write-mapping')
     mapping = mapping_from({'quaternion': 'xyzw', 'columns': {
         't': 'Time (Seconds)', 'q': [f'Rotation {letter}' for letter in 'XYZW'],
         **{f'p{letter.lower()}': f'quad Position {letter}' for letter in 'XYZ'}}}, 'a test')
-    same(load(path, mapping), PLACE, Q)
+    read = load(path, mapping)
+    np.testing.assert_allclose(read.stack(*PLACE), place)
+    np.testing.assert_allclose(read.stack(*XYZW), turns)
 
 
 @pytest.mark.parametrize(('stamp', 'name'), [
@@ -177,6 +270,28 @@ def test_an_index_of_pandas_is_the_time(tmp_path, stamp, name):
     np.testing.assert_allclose(read.stack(*PLACE), FLIGHT.stack(*PLACE)[:len(read)], atol=1e-6)
     if name == 'when':
         assert read.info['start_ns'] == np.datetime64('2026-03-01T08:00:00', 'ns').astype(int)
+
+
+@pytest.mark.parametrize('stamp', ['{:%H:%M:%S.%f}', '{:%I:%M:%S.%f %p}'])
+def test_a_time_of_day_goes_on_behind_midnight(tmp_path, stamp):
+    begin = datetime(2026, 3, 1, 23, 59, 56)
+    path = table(tmp_path, {'n': T, **columns('', 'xyz', PLACE), **columns('q', 'wxyz', Q)})
+    head, *rows = path.read_text().splitlines()
+    path.write_text('\n'.join([f'time,{head}', *(
+        f'{stamp.format(begin + timedelta(seconds=t))},{row}'
+        for t, row in zip(T, rows, strict=True))]) + '\n')
+    read = load(path)
+    np.testing.assert_allclose(read.t - read.t[0], T, atol=1e-6)
+    same(replace(read, t=read.t - read.t[0]), PLACE, Q)
+
+
+@pytest.mark.parametrize(('unit', 'long'), [('sec', 1.0), ('min', 60.0), ('hr', 3600.0)])
+def test_a_duration_of_matlab_is_a_time(tmp_path, unit, long):
+    path = table(tmp_path, {'n': T, **columns('pos_', 'xyz', PLACE), **columns('q', 'wxyz', Q)})
+    head, *rows = path.read_text().splitlines()
+    path.write_text('\n'.join([f'Time,{head}', *(f'{t / long:.9g} {unit},{row}' for t, row in zip(
+        T, rows, strict=True))]) + '\n')
+    same(load(path), PLACE, Q)
 
 
 def test_a_date_that_does_not_exist_is_named(tmp_path):
@@ -244,6 +359,33 @@ def test_a_unit_that_position_and_velocity_share_is_told_by_the_tilt(tmp_path, s
              **named(('vx', 'vy', 'vz'), size * FLIGHT.stack(*SPEED)),
              **named(Q, FLIGHT.stack(*Q))}
     same(load(table(tmp_path, found)), PLACE, SPEED, Q)
+
+
+@pytest.mark.parametrize('place', [False, True])
+def test_the_unit_of_a_velocity_is_told_by_the_other_streams(tmp_path, place):
+    """In cm/s it was taken for one in mm/s where the position was in m, or missing."""
+    path = table(tmp_path, {'time': T, **(columns('', 'xyz', PLACE) if place else {}),
+                            **named(['vx', 'vy', 'vz'], 100 * FLIGHT.stack(*SPEED)),
+                            **columns('q', 'wxyz', Q), **columns('gyro_', 'xyz', RATE),
+                            **columns('acc_', 'xyz', FORCE)})
+    read = load(path)
+    same(read, SPEED, Q, *([PLACE] if place else []))
+    assert 'vx, vy, vz: velocity in cm/s, world axes' in ' '.join(read.info['notes'])
+
+
+@pytest.mark.parametrize('size', [0.4, 1.0, 2.5])
+@pytest.mark.parametrize('turned', [False, True])
+def test_an_acceleration_without_gravity_is_no_specific_force_in_any_unit(tmp_path, size, turned):
+    """Its size may be about 1 as that of one in g is, but not in one direction."""
+    q, force = FLIGHT.stack(*Q), FLIGHT.stack(*FORCE)
+    moved = size * (rotate(q, force) - [0.0, 0.0, 9.81])
+    found = {'time': T, **columns('', 'xyz', PLACE), **columns('q', 'wxyz', Q),
+             **named(['acc_x', 'acc_y', 'acc_z'], rotate(conjugate(q), moved) if turned else
+                     moved)}
+    read = load(table(tmp_path, found))
+    assert not read.has('ax')
+    assert 'an acceleration without gravity' in ' '.join(read.info['notes'])
+    same(load(table(tmp_path, {**found, **columns('imu_accel_', 'xyz', FORCE)})), FORCE)
 
 
 def test_headings_without_cells_tell_names_apart(tmp_path):
