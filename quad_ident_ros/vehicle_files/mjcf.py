@@ -8,6 +8,7 @@ import math
 
 import numpy as np
 
+from quad_ident_ros.effects.registry import Values
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.vehicle_files.bodies import Body, combined, spun
 from quad_ident_ros.vehicle_files.mjcf_bodies import is_free, Part, parts_of, vehicles_of
@@ -17,7 +18,7 @@ from quad_ident_ros.vehicle_files.mjcf_thrust import common, Push, pushes_of
 from quad_ident_ros.vehicle_files.reading import Draft, thrusts_as_commands, UNLIMITED
 from quad_ident_ros.vehicle_files.rotor_axes import check_axis
 from quad_ident_ros.vehicle_files.source import one_of, Source
-from quad_ident_ros.vehicle_files.weak_rotors import faults_of, note_losses
+from quad_ident_ros.vehicle_files.weak_rotors import faults_of, note_losses, SAME
 from quad_ident_ros.vehicle_files.xml_tree import Element, root_of
 
 GRAVITY = (0.0, 0.0, -9.81)     # m/s^2, of MuJoCo
@@ -125,6 +126,8 @@ def _take_rotors(draft: Draft, model: Model, parts: Sequence[Part], pushes: Sequ
                   'no actuator of the model pushes at a site of the vehicle')
         for key in ('rotors', 'thrust_coefficient', 'torque_coefficient'):
             draft.reasons[key] = reason
+        dynamics = _take_dynamics(draft, thrusts, moments) if thrusts else {}
+        draft.effects = lambda _: dynamics
         return
     where = _lines_of(thrusts)
     turning = []
@@ -154,6 +157,13 @@ def _take_rotors(draft: Draft, model: Model, parts: Sequence[Part], pushes: Sequ
             if moments else 'the gear of the thrusts has no moment about z')
     _take_limits(draft, thrusts, common(thrusts, forces, 'thrust per control'), whole,
                  size or None, where)
+    dynamics = _take_dynamics(draft, thrusts, moments)
+    draft.effects = lambda _: {**dynamics, **faults}
+
+
+def _take_dynamics(draft: Draft, thrusts: Sequence[Push], moments: Sequence[Push]) -> Values:
+    """Enter lag and delay of the thrusts, and return them as effects; at least one thrust."""
+    where = _lines_of(thrusts)
     lag = common(thrusts, [push.lag for push in thrusts], 'time constant')
     if lag > 0.0:
         draft.note('time constant of the thrust', lag, 's', f'{where} dynprm')
@@ -162,8 +172,13 @@ def _take_rotors(draft: Draft, model: Model, parts: Sequence[Part], pushes: Sequ
     delay = common(thrusts, [push.delay for push in thrusts], 'delay')
     if delay > 0.0:
         draft.note('delay of the controls', delay, 's', f'{where} delay')
-    draft.effects = lambda _: {'motor_lag': {'time_constant': lag},
-                               'actuation_delay': {'delay': delay}, **faults}
+    for push in moments:
+        draft.assumed += [f'{push.element.place()}: its {what} of {one:g} s is not that of the '
+                          f'thrusts, {other:g} s, which is taken'
+                          for what, one, other in (('lag', push.lag, lag),
+                                                   ('delay', push.delay, delay))
+                          if not math.isclose(one, other, rel_tol=SAME)]
+    return {'motor_lag': {'time_constant': lag}, 'actuation_delay': {'delay': delay}}
 
 
 def _lines_of(thrusts: Sequence[Push]) -> str:
@@ -171,7 +186,7 @@ def _lines_of(thrusts: Sequence[Push]) -> str:
     files: dict[str, list[str]] = {}
     for push in thrusts:
         files.setdefault(push.element.beside, []).append(str(push.element.line))
-    return ', '.join(f'{file}{", " * bool(file)}lines {", ".join(lines)}'
+    return ', '.join(f'{file}{", " * bool(file)}line{"s" * (len(lines) > 1)} {", ".join(lines)}'
                      for file, lines in files.items()) + ': <actuator>'
 
 

@@ -69,8 +69,9 @@ def write(base: Base) -> EditedXml:
         edited.say_several(parts[main].element, len(bodies))
     edited.lack(['speed_max'], 'a command is a thrust here, and speeds are not of the file')
     _write_thrusts(edited, base, thrusts)
-    _write_lags(edited, base, thrusts, _filter(model))
-    _write_delay(edited, base, thrusts, step_of(model))
+    # Moments that are controls of their own come from the same rotors.
+    _write_lags(edited, base, thrusts, pushes, _filter(model))
+    _write_delay(edited, base, thrusts, pushes, step_of(model))
     return edited
 
 
@@ -133,8 +134,14 @@ def _filter(model: Model) -> str:
     return 'filter' if 'RK4' in methods else 'filterexact'
 
 
-def _write_lags(edited: EditedXml, base: Base, thrusts: list[Push], kind: str) -> None:
-    """Have the dynamics of the actuators hold the lag; kind: dyntype where they have none."""
+def _write_lags(edited: EditedXml, base: Base, thrusts: Sequence[Push], pushes: Sequence[Push],
+                kind: str) -> None:
+    """
+    Have the dynamics of the actuators hold the lag.
+
+    Args: pushes: the thrusts, and moments that are controls of their own; kind: dyntype where
+    they have none.
+    """
     lag = base.wanted.lag
     if base.wanted.rise != base.wanted.fall:
         edited.one_lag()
@@ -143,14 +150,14 @@ def _write_lags(edited: EditedXml, base: Base, thrusts: list[Push], kind: str) -
         edited.lack(LAGS, 'a filter of MuJoCo needs a time constant above 0; take out its dyntype')
     elif lag > 0.0 and not thrusts:
         edited.lack(LAGS, 'the file has no thrust of single rotors')
-    elif lag > 0.0:
-        for push in thrusts:
+    elif lag > 0.0 and differs(now, lag):
+        for push in pushes:
             stated = push.element.get('dynprm', '1').split() if push.lag else ['']
             edited.attribute(push.element, 'dynprm', [lag, *map(float, stated[1:])], 's',
                              base.wanted.sources['rise'], usual=(1.0,))
             if not push.lag:
                 edited.word(push.element, 'dyntype', kind)
-        _make_general(edited, [push.element for push in thrusts if push.element.tag == 'motor'])
+        _make_general(edited, [push.element for push in pushes if push.element.tag == 'motor'])
 
 
 def _delay_in_file(base: Base) -> bool:
@@ -161,17 +168,24 @@ def _delay_in_file(base: Base) -> bool:
     return base.effect('actuation_delay', 'delay') > 0.0 and lag_of_file
 
 
-def _write_delay(edited: EditedXml, base: Base, thrusts: Sequence[Push], step: float) -> None:
+def _write_delay(edited: EditedXml, base: Base, thrusts: Sequence[Push],
+                 pushes: Sequence[Push], step: float) -> None:
     """Have the actuators hold the delay of the commands; step: of the model, s."""
     delay = base.wanted.delay if _delay_in_file(base) else 0.0
     if base.wanted.delay > 0.0 and not delay:
         edited.lack(['delay'], why_not('actuation_delay'))
-    if not base.effect('actuation_delay', 'delay'):
+    now = base.effect('actuation_delay', 'delay')
+    if base.wanted.delay > 0.0 and not delay and len(pushes) > len(thrusts):
+        other = next(push for push in pushes if not push.pushes)
+        edited.remarks.append(f'{other.element.place()} is a control of its own; delay it in what '
+                              'sends it, as the code beside the file does the thrusts')
+    if not now or not differs(now, delay):
         return
-    for push in thrusts:
-        edited.attribute(push.element, 'delay', [delay], 's', base.wanted.sources['delay'])
+    for push in pushes:
+        edited.attribute(push.element, 'delay', [delay], 's', base.wanted.sources['delay'],
+                         usual=(0.0,))
         needed = math.ceil(delay / step * (1.0 - SAME))
-        if push.element.number('nsample') < needed:
+        if push.element.number('nsample', 0.0) < needed:
             edited.word(push.element, 'nsample', str(needed))
 
 
@@ -183,9 +197,10 @@ def _make_general(edited: EditedXml, motors: Sequence[Element]) -> None:
             if motor.get(name, usual) != usual:     # of a default class, not read for a <motor>
                 edited.word(motor, name, usual)
     if motors:
+        several = f' and {len(motors) - 1} more become' if len(motors) > 1 else ' becomes'
         edited.remarks.append(
-            f'{motors[0].place()} and {len(motors) - 1} more become <general>, for a <motor> has '
-            'no lag; thrusts begin at data.act, which is 0 after a reset')
+            f'{motors[0].place()}{several} <general>, for a <motor> has no lag; thrusts begin at '
+            'data.act, which is 0 after a reset')
 
 
 def _write_body(edited: EditedXml, base: Base, model: Model, part: Part, body: Body) -> None:

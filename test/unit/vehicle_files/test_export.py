@@ -193,6 +193,63 @@ def test_a_lag_of_mujoco_is_one_time_constant():
     assert [fate.name for fate in none.fates.by_code] == ['rotor_drag']
 
 
+def controls_apart(extra=''):
+    """Return models with a thrust of all and moments, and with thrusts and one moment."""
+    total = f"""<actuator><motor name="all" site="thrust0" gear="0 0 1 0 0 0" {extra}/>
+<motor name="roll" site="thrust0" gear="0 0 0 1 0 0" {extra}/>
+<motor name="pitch" site="thrust0" gear="0 0 0 0 1 0" {extra}/></actuator>"""
+    yaw = f'<motor name="yaw" site="thrust0" gear="0 0 0 0 0 1" {extra}/></actuator>'
+    apart = mjcf.motors('0 0 1 0 0 0', extra).replace('</actuator>', yaw)
+    return [Source('quad.xml', mjcf.model(actuators=each)) for each in (total, apart)]
+
+
+def lagging(**effect):
+    return replace(base('mujoco')[1], mass=1.3, motors=None, effects=effect)
+
+
+def test_a_lag_is_one_of_moments_too_that_are_controls_of_their_own():
+    """They come from the same rotors: a vehicle whose thrust alone lags turns as before."""
+    vehicle = lagging(motor_lag={'time_constant': 0.03})
+    for source, count in zip(controls_apart(), (3, 5), strict=True):
+        found = export(vehicle, 'mujoco', source)
+        assert found.text.count('dynprm="0.03"') == found.text.count('<general') == count
+        source = replace(source, text=found.text)
+        assert {entry.key: entry.value for entry in read_vehicle(source).read}[
+            'time constant of the thrust'] == 0.03
+        assert export(vehicle, 'mujoco', source).text == found.text
+
+
+def test_mujoco_itself_has_the_lag_of_moments_that_are_controls_of_their_own():
+    mujoco = pytest.importorskip('mujoco', reason='MuJoCo is not installed')
+    found = export(lagging(motor_lag={'time_constant': 0.03}), 'mujoco', controls_apart()[0])
+    model = mujoco.MjModel.from_xml_string(found.text)
+    data = mujoco.MjData(model)
+    data.qpos[2], data.ctrl[:] = 10.0, 0.1
+    mujoco.mj_step(model, data, round(0.03 / model.opt.timestep) + 1)    # forces of its begin
+    np.testing.assert_allclose(data.actuator_force, 0.1 * (1.0 - np.exp(-1.0)), rtol=1e-6)
+
+
+def test_a_delay_is_one_of_moments_too_that_are_controls_of_their_own():
+    vehicle = lagging(actuation_delay={'delay': 0.03})
+    for source, count in zip(controls_apart('delay="0.02" nsample="10"'), (3, 5), strict=True):
+        found = export(vehicle, 'mujoco', source)
+        assert found.text.count('delay="0.03"') == found.text.count('nsample="15"') == count
+    # Where the file has none, and the code delays the thrusts alone, the rest is said.
+    found = export(vehicle, 'mujoco', controls_apart()[1])
+    assert [fate.name for fate in found.fates.by_code] == ['actuation_delay']
+    [said] = found.remarks
+    assert said.endswith("<motor name='yaw'> is a control of its own; delay it in what sends it, "
+                         'as the code beside the file does the thrusts')
+
+
+def test_a_moment_with_another_lag_than_the_thrusts_is_said():
+    text = controls_apart()[0].text.replace(
+        '<motor name="roll"', '<general name="roll" dyntype="filter" dynprm="0.02"')
+    [said] = [line for line in read_vehicle(Source('quad.xml', text)).assumed if 'roll' in line]
+    assert said.endswith("<general name='roll'>: its lag of 0.02 s is not that of the thrusts, "
+                         '0 s, which is taken')
+
+
 def test_a_motor_of_mujoco_becomes_one_with_a_lag_and_is_else_the_same():
     text = mjcf.model(actuators=mjcf.motors().replace('/>', '>< !-- </motor> --></motor>', 1
                                                       ).replace('< !', '<!'))
