@@ -170,8 +170,11 @@ def _constants(vehicle: Vehicle, base: Base, target: Target, edits: Edits) -> li
         value = getattr(vehicle, name)
         if value and differs(data.get(name, 0.0), value):
             found.append(Fate(name, '', reason))
-    if any(vehicle.linear_drag) and not {'linear_drag', 'rotor_drag'} & target.holds:
-        found.append(Fate('linear_drag', '', 'the format has no such drag'))
+    given = data.get('linear_drag', (0.0, 0.0, 0.0))
+    if target.holds & {'linear_drag', 'rotor_drag'} <= lacking.keys() and any(
+            differs(old, new) for old, new in zip(given, vehicle.linear_drag, strict=True)):
+        found.append(Fate('linear_drag', '', 'that of the simulator stays' if any(given) else
+                          'the format has no such drag'))
     if any(vehicle.rotational_drag):
         found.append(Fate('rotational_drag', '', 'the format has no such drag'))
     if vehicle.residual is not None:

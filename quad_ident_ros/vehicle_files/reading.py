@@ -146,13 +146,17 @@ def finished(draft: Draft, kind: str, supplied: Mapping[str, Any] | None = None)
         _supply(draft, data, read, key, value)
     ratio = data.pop(RATIO, None)
     if ratio is not None and 'thrust_coefficient' in data:
-        data['torque_coefficient'] = data['thrust_coefficient'] * schema.number(
-            f'--set {RATIO}', ratio, 0.0, exclusive=True)
+        # What --set gives may be text still: YAML reads 1e-5 as such.
+        data['torque_coefficient'] = math.prod(
+            schema.number(f'--set {key}', value, 0.0, exclusive=True)
+            for key, value in (('thrust_coefficient', data['thrust_coefficient']),
+                               (RATIO, ratio)))
     missing = {key: _asked(key, draft) for key in NEEDED if key not in data}
     if _without_spins(data.get('rotors')):
         missing[SPINS] = _asked(SPINS, draft)
     if missing:
-        return Reading(draft.where, kind, None, tuple(read), missing, tuple(draft.assumed))
+        return Reading(draft.where, kind, None, tuple(read), missing,
+                       tuple(dict.fromkeys((*draft.assumed, *_odd(data.get('rotors'), draft)))))
     try:
         vehicle = vehicle_from_mapping({'name': draft.name, **data}, draft.where)
         theta = vector(draft.effects(vehicle), vehicle, f'{draft.where}: effects')
@@ -160,12 +164,12 @@ def finished(draft: Draft, kind: str, supplied: Mapping[str, Any] | None = None)
         raise InputError(f'{error}{_read_from(str(error), draft)}') from None
     vehicle = replace(vehicle, effects=mapping(theta))
     return Reading(draft.where, kind, vehicle, tuple(read), {},
-                   tuple(dict.fromkeys((*draft.assumed, *_odd(vehicle, draft)))))
+                   tuple(dict.fromkeys((*draft.assumed, *_odd(vehicle.rotors, draft)))))
 
 
-def _odd(vehicle: Vehicle, draft: Draft) -> list[str]:
+def _odd(rotors: Any, draft: Draft) -> list[str]:
     """Return what to say of a number of rotors that no usual vehicle has."""
-    count = len(vehicle.rotors)
+    count = len(rotors) if isinstance(rotors, list | tuple) else 0
     if count % 2 == 0:
         return []
     place = next((entry.place for entry in draft.read if entry.key == 'rotors'), '--set')

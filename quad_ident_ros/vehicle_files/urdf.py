@@ -24,6 +24,9 @@ from quad_ident_ros.vehicle_files.xml_tree import Element, parse, root_of
 
 GRAVITY = 9.80665   # m/s^2, standard
 PYBULLET_GRAVITY = 9.8      # m/s^2, in the code of gym-pybullet-drones
+# Of bodies of Bullet where nobody sets it, as gym-pybullet-drones does not: they are slowed by
+# DAMPING (1 + speed) speed, m/s^2 with speed in m/s, and their rate likewise, rad/s^2.
+DAMPING = 0.04
 PER_RPM = (30.0 / math.pi) ** 2     # from per rpm^2 to per (rad/s)^2
 PROPS = tuple(f'prop{k}_link' for k in range(4))
 PROP_SPINS = (-1, 1, -1, 1)     # of gym-pybullet-drones; those of its racer are the other way
@@ -59,6 +62,7 @@ def read(source: Source) -> Draft:
         _take_plugins(draft, plugins, rotors, whole)
     elif properties is not None and set(PROPS) <= links.keys():
         _take_properties(draft, properties, rotors, whole, source)
+        _take_damping(draft)
         others = [name for name in links if _ROTOR.search(name) and name not in PROPS]
         if others:
             draft.assumed.append('gym-pybullet-drones flies with prop0_link to prop3_link; these '
@@ -210,6 +214,19 @@ def _take_properties(draft: Draft, properties: Element, rotors: Sequence[Link], 
             draft.note(theirs, properties.number(theirs), unit, properties.place(theirs))
             draft.assumed.append(f'{theirs} is left out: it acts only with Physics.{physics} and '
                                  'Physics.PYB_GND_DRAG_DW, which are not the usual Physics.PYB')
+
+
+def _take_damping(draft: Draft) -> None:
+    """Enter the damping of Bullet, in which a vehicle of gym-pybullet-drones flies."""
+    force = DAMPING * draft.data['mass']
+    draft.take('linear_drag', [force] * 3, 'N/(m/s)', f'damping of Bullet, {DAMPING:g} x mass')
+    draft.note('drag with the square of the speed', force, 'kg/m',
+               f'damping of Bullet, {DAMPING:g} x mass')
+    draft.effects = lambda _: {'body_drag': {'horizontal': force, 'vertical': force}}
+    draft.assumed.append(
+        f'the damping of Bullet is on, which gym-pybullet-drones leaves as it is: it slows by '
+        f'{DAMPING:g} (1 + v) v m/s2 at v m/s; that of the rate, {DAMPING:g} (1 + w) w rad/s2 at '
+        'w rad/s, is left out, because no effect is such a moment')
 
 
 def _known(links: dict[str, Link], name: str, element: Element) -> Link:

@@ -16,7 +16,7 @@ from quad_ident_ros.vehicle_files.speed_unit import counted
 from quad_ident_ros.vehicle_files.targets import TARGETS
 
 # What no file of a kind has, and what its new files have in another way.
-UNLIKE = {'urdf': ('gravity', 'rotor_radius', 'rotor_inertia', 'effects')}
+UNLIKE = {'urdf': ('gravity', 'rotor_radius', 'rotor_inertia', 'linear_drag', 'effects')}
 
 
 @pytest.mark.parametrize('to', TARGETS)
@@ -100,7 +100,7 @@ def test_mujoco_itself_pushes_as_a_new_file_says():
 def test_a_new_urdf_has_weak_rotors_in_its_motor_plugins_and_another_urdf_none():
     source, vehicle = base('urdf')
     fault = {'loss_2': 0.1, 'loss_both_3': 0.2}
-    weak = replace(vehicle, effects={'rotor_fault': fault})
+    weak = replace(vehicle, effects={**vehicle.effects, 'rotor_fault': fault})
     assert again(source, export(weak, 'urdf')).effects['rotor_fault'] == pytest.approx(fault)
     fates = export(weak, 'urdf', source).fates
     assert [fate.form for fate in fates.not_carried] == ['thrust', 'thrust_and_torque']

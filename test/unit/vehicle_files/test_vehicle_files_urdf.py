@@ -2,14 +2,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """Vehicles in URDF files: plain ones, of gym-pybullet-drones, with plugins of Gazebo."""
 
+from dataclasses import replace
 import io
 import math
+from pathlib import Path
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 from refusing import refused
 
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.vehicle_files.export import export
 from quad_ident_ros.vehicle_files.kinds import kind_of
 from quad_ident_ros.vehicle_files.load import load_any_vehicle, read_vehicle
 from quad_ident_ros.vehicle_files.source import Source
@@ -76,8 +80,80 @@ def test_properties_of_gym_pybullet_drones_are_per_rpm():
     # Its yaw torque is -t0 + t1 - t2 + t3, and the other way for its racer.
     assert [rotor.spin for rotor in vehicle.rotors] == [-1, 1, -1, 1]
     assert [rotor.spin for rotor in reading(SMALL, 'racer.urdf').vehicle.rotors] == [1, -1, 1, -1]
-    assert vehicle.effects == {}
+    assert vehicle.linear_drag == pytest.approx([0.04 * 0.027] * 3)
+    assert vehicle.effects == {'body_drag': pytest.approx(
+        {'horizontal': 0.04 * 0.027, 'vertical': 0.04 * 0.027})}
     assert sum('is left out: it acts only with Physics.' in text for text in found.assumed) == 3
+
+
+@pytest.mark.parametrize('velocity', [(1, 0, 0), (-2, 3, 1), (0, 0, -6)])
+def test_what_slows_a_vehicle_of_gym_pybullet_drones_is_the_damping_of_pybullet(
+        velocity, tmp_path):
+    pybullet = pytest.importorskip('pybullet', reason='pybullet is not installed')
+    (tmp_path / 'small.urdf').write_text(SMALL)
+    vehicle = load_any_vehicle(tmp_path / 'small.urdf')
+    there, step = pybullet.connect(pybullet.DIRECT), 1e-4
+    try:
+        pybullet.setTimeStep(step)
+        body = pybullet.loadURDF(str(tmp_path / 'small.urdf'), [0, 0, 5],
+                                 flags=pybullet.URDF_USE_INERTIA_FROM_FILE)
+        pybullet.resetBaseVelocity(body, velocity)
+        pybullet.stepSimulation()
+        slowed = np.subtract(pybullet.getBaseVelocity(body)[0], velocity) / step
+    finally:
+        pybullet.disconnect(there)
+    drag, square = vehicle.linear_drag[0], vehicle.effects['body_drag']['horizontal']
+    force = -(drag + square * np.linalg.norm(velocity)) * np.array(velocity)
+    np.testing.assert_allclose(slowed, force / vehicle.mass, rtol=1e-6, atol=1e-6)
+
+
+def test_the_damping_of_bullet_stays_whatever_is_exported():
+    source = Source('drone.urdf', SMALL)
+    vehicle = reading(SMALL).vehicle
+    assert export(vehicle, 'urdf', source).fates.not_carried == ()
+    for drag in ((0.01, 0.01, 0.01), (0.0, 0.0, 0.0)):
+        fates = export(replace(vehicle, linear_drag=drag), 'urdf', source).fates
+        assert [(fate.name, fate.reason) for fate in fates.not_carried] == [
+            ('linear_drag', 'that of the simulator stays')]
+    # Of a URDF that no simulator is known of there is none.
+    plain = Source('drone.urdf', drone())
+    mine = read_vehicle(plain, {'thrust_coefficient': 8e-6, 'torque_over_thrust': 0.02,
+                                'spins': [-1, -1, 1, 1]}).vehicle
+    fates = export(replace(mine, linear_drag=(0.01, 0.0, 0.0)), 'urdf', plain).fates
+    assert ('linear_drag', 'the format has no such drag') in [
+        (fate.name, fate.reason) for fate in fates.not_carried]
+
+
+def test_the_example_has_what_gym_pybullet_drones_takes_by_its_place():
+    folder = Path(__file__).resolve().parents[3] / 'docs' / 'simulators'
+    root = ElementTree.parse(folder / 'gym_pybullet_drones.urdf').getroot()
+    mass, shape = root[1][0][1], root[1][2][1][0]
+    assert (mass.tag, shape.tag, shape.attrib.keys()) == ('mass', 'cylinder', {'radius', 'length'})
+    assert len(root[1][2][0].attrib['xyz'].split(' ')) == 3
+    # It pushes at the first four links below the base, and turns the vehicle at the fifth.
+    names = [link.attrib['name'] for link in root.findall('link')]
+    assert names[1:] == [f'prop{k}_link' for k in range(4)] + ['center_of_mass_link']
+
+
+@pytest.mark.parametrize('thrust', [8e-6, '8e-6'])
+def test_a_ratio_that_is_supplied_is_over_a_thrust_that_yaml_may_read_as_text(thrust):
+    supplied = {'thrust_coefficient': thrust, 'torque_over_thrust': '2e-2',
+                'spins': [-1, -1, 1, 1]}
+    vehicle = reading(drone(), supplied=supplied).vehicle
+    assert vehicle.torque_coefficient == pytest.approx(8e-6 * 0.02)
+    for bad in ('x', {'value': 8e-6}, -1.0):
+        with pytest.raises(InputError, match='--set thrust_coefficient: '):
+            reading(drone(), supplied=supplied | {'thrust_coefficient': bad})
+
+
+def test_seven_rotors_are_doubted_also_where_something_is_missing():
+    text = drone(extra=''.join(ROTOR.format(k=k, turn='', x=0.1 * k, y=0, axis=1)
+                               for k in (4, 5, 6)))
+    for supplied in ({}, {'thrust_coefficient': 8e-6, 'torque_over_thrust': 0.02,
+                          'spins': [1, -1] * 3 + [1]}):
+        found = reading(text, supplied=supplied)
+        assert bool(found.missing) != bool(supplied)
+        assert sum('carry the vehicle, an odd number' in text for text in found.assumed) == 1
 
 
 def test_props_beyond_the_four_of_gym_pybullet_drones_are_said_to_carry_nothing():
