@@ -65,6 +65,12 @@ class Motors:
             self.gives and (self.coefficients or self.gain is not None))
 
 
+def are_thrusts(motors: Motors | None) -> bool:
+    """Whether signals are thrusts or shares of one, so that speeds may only stand for them."""
+    return (motors is not None and motors.kind == 'normalised' and motors.gives == 'thrust'
+            and motors.exponent == 1.0 and not motors.coefficients)
+
+
 def shares(signals: ArrayLike, minimum: float, maximum: float) -> np.ndarray:
     """Return shares of full throttle, at most 1, of signals of any shape; nan for off."""
     with np.errstate(invalid='ignore'):

@@ -218,7 +218,9 @@ def thrusts_as_commands(draft: Draft, highest: float, ratio: float | None, place
                                        'exponent': 1.0}}
     draft.assumed.append(
         f'a command is a thrust here and the file has no speeds: {FULL_SPEED:g} rad/s stand for '
-        f'the highest, {highest:.6g} N; `motors` has the map of commands from {low:g} to {high:g}')
+        f'the highest, {highest:.6g} N; `motors` has the map of commands from {low:g} to '
+        f'{high:g}; records in rad/s need the coefficients and speed_max of the rotors in the '
+        'vehicle file, and no motors in it')
 
 
 def _supply(draft: Draft, data: dict[str, Any], read: list[Entry], key: str, value: Any) -> None:

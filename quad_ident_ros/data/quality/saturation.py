@@ -8,6 +8,7 @@ from quad_ident_ros.data.cutting import without
 from quad_ident_ros.data.quality import units
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.model.motors import are_thrusts
 from quad_ident_ros.model.vehicle import Vehicle
 
 NEAR = 0.002   # of the range of speeds
@@ -34,11 +35,12 @@ def speeds(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
         if rows.any():
             share = rows.mean()
             worst = int(np.argmax(bad.sum(axis=0)))
+            beyond = are_thrusts(vehicle.motors) and table.max() > vehicle.speed_max + margin
             found.append(Finding(
                 'saturation', _grave(share, bad[:, worst].mean()),
                 f'{names[worst]}, t = {record.t[int(np.argmax(rows))]:.3f} s',
                 f'{100 * share:.2f} % of the samples have a command at or beyond {limit} = '
                 f'{getattr(vehicle, limit):g} rad/s',
                 without(record.t, rows, 'fly more gently',
-                        'correct the limit in the vehicle file')))
+                        units.OF_ROTORS if beyond else 'correct the limit in the vehicle file')))
     return found

@@ -13,6 +13,7 @@ from quad_ident_ros.data.quality.series import Grid
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.data.signal_kind import LINEAR
 from quad_ident_ros.data.thrust_level import BY_LOG, FULL_SPEED, mass_to_carry
+from quad_ident_ros.model.motors import are_thrusts
 from quad_ident_ros.model.vehicle import Vehicle
 
 APART = 10.0      # times too much or too little: no vehicle file is that wrong,
@@ -79,7 +80,8 @@ def other_vehicle(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding
         'other_vehicle', 'error' if wrong else 'warning', 'vehicle file',
         f'the commands give {ratio:.2g} times the thrust with which {vehicle.name} flies{more}: '
         'mass, thrust coefficient and inertia seem to be those of another vehicle',
-        'name the vehicle that flew with --vehicle, or weigh it and measure its thrust')]
+        'name the vehicle that flew with --vehicle, or weigh it and measure its thrust'
+        + (f'; or {units.OF_ROTORS}' if are_thrusts(vehicle.motors) else ''))]
 
 
 def curve(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:

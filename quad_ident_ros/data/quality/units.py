@@ -18,6 +18,10 @@ NEAR = 1.35     # a slope is a unit's where it is within this factor
 CERTAIN = 0.9   # correlation from which on a slope that is no unit's is an error
 OFF = 1.5       # no gyro and no estimate is off by that factor
 MOVED = 1e-3    # rad/s or m/s rms: less is rounding
+OF_ROTORS = ('if the commands are speeds of rotors, give the vehicle file the thrust_coefficient, '
+             'torque_coefficient and speed_max of these and take its motors out: the speeds that '
+             'it has only stand for thrusts')
+"""What to do about commands that do not fit to a vehicle whose signals are thrusts."""
 
 
 def _is(slope: float, unit: float) -> bool:

@@ -23,6 +23,8 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import SENSORS
 from quad_ident_ros.model.vehicle import load_vehicle, write_vehicle
+from quad_ident_ros.vehicle_files.load import read_vehicle
+from quad_ident_ros.vehicle_files.source import Source
 
 
 @pytest.mark.parametrize('order', [p for p in permutations(range(4)) if p != (0, 1, 2, 3)])
@@ -263,3 +265,24 @@ def precessing(hertz, late):
 def test_a_clock_that_is_off_is_no_other_order_of_the_rotors(hertz, late):
     """Where the tilt goes round, rotors moved on by one act as a quarter of a turn later."""
     assert 'rotor_order' not in [one.code for one in findings(precessing(hertz, late), VEHICLE)]
+
+
+@pytest.mark.parametrize(('size', 'code'), [(2.0, 'saturation'), (0.6, 'other_vehicle')])
+def test_rotor_speeds_beside_a_simulator_whose_commands_are_thrusts_are_told_from_them(size, code):
+    """Its file has no speeds; one that stands for the most thrust is taken, and is not theirs."""
+    full = VEHICLE.mass * VEHICLE.gravity / 2       # N of a rotor, twice that of hover
+    gear = '\n'.join(f'<motor site="s{k}" gear="0 0 1 0 0 {0.02 * rotor.spin}" '
+                     f'ctrlrange="0 {full}"/>' for k, rotor in enumerate(VEHICLE.rotors))
+    sites = '\n'.join(f'<site name="s{k}" pos="{" ".join(map(str, rotor.position))}"/>'
+                      for k, rotor in enumerate(VEHICLE.rotors))
+    moments = ' '.join(map(str, VEHICLE.inertia))
+    vehicle = read_vehicle(Source('quad.xml', f"""<mujoco><worldbody><body><freejoint/>
+<inertial pos="0 0 0" mass="{VEHICLE.mass}" diaginertia="{moments}"/>{sites}</body></worldbody>
+<actuator>{gear}</actuator></mujoco>""")).vehicle
+    record = flight()
+    table = record.stack(*CMD) * size * vehicle.hover_speed / VEHICLE.hover_speed
+    record = replace(record, columns={**record.columns, **named(CMD, table)})
+    [said] = [one.remedy for one in findings(record, vehicle) if one.code == code]
+    assert said.endswith('take its motors out: the speeds that it has only stand for thrusts')
+    other = replace(vehicle, motors=None)
+    assert not any('take its motors out' in one.remedy for one in findings(record, other))
