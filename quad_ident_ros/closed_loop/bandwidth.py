@@ -9,7 +9,7 @@ AXES = ('x', 'y', 'z', 'yaw')
 HALF_POWER = 0.5 ** 0.5
 PERIOD = 20.0           # s of the multisine, whose lines are 1 / PERIOD apart
 LOWEST, HIGHEST = 0.1, 8.0      # Hz: below, loops follow; above, vehicles do not
-STRENGTH = 0.3          # m/s^2 and rad/s^2 rms: small against gravity, so that the loop is linear
+STRENGTH = 0.03         # m/s^2 and rad/s^2 rms: tilts by a milliradian, so that the loop is linear
 SEGMENT = 10.0          # s of the spectra of a flight
 COHERENT = 0.8          # of a flight: below, noise is more than a quarter of what is asked for
 
@@ -36,7 +36,9 @@ def bandwidth_of_multisine(asked: np.ndarray, flown: np.ndarray) -> dict[str, fl
     """
     Return {axis: bandwidth, Hz} by the second period of a multisine (N, 4) and the path flown.
 
-    None where the loop follows beyond HIGHEST.
+    Either may be half the difference of two flights with opposite signs: what both have, as the
+    sag of a battery or the yaw that a tilt about two axes makes, is none of the answer. None
+    where the loop follows beyond HIGHEST.
     """
     half = len(asked) // 2
     spectra = [np.fft.rfft(each[half:2 * half], axis=0) for each in (asked, flown)]

@@ -135,11 +135,16 @@ def _bandwidth(controller: Controller, reference: Reference, vehicle: Vehicle,
                theta: np.ndarray) -> Bandwidths:
     """Return the bandwidths about hover at the begin of a Reference, or None off the path."""
     asked = multisine(reference.rate)
-    path = asked + reference.wanted[0, [0, 1, 2, 12]]
-    wanted = wanted_of(np.arange(len(path)) / reference.rate, path, 0.02)
-    found = _path(controller, wanted, reference.rate, vehicle, theta)
-    return (None if found is None
-            else bandwidth_of_multisine(wanted[:, [0, 1, 2, 12]], found[:, [0, 1, 2, 6]]))
+    halves = [np.zeros_like(asked), np.zeros_like(asked)]
+    for sign in (1.0, -1.0):
+        path = sign * asked + reference.wanted[0, [0, 1, 2, 12]]
+        wanted = wanted_of(np.arange(len(path)) / reference.rate, path, 0.02)
+        found = _path(controller, wanted, reference.rate, vehicle, theta)
+        if found is None:
+            return None
+        halves[0] += 0.5 * sign * wanted[:, [0, 1, 2, 12]]
+        halves[1] += 0.5 * sign * found[:, [0, 1, 2, 6]]
+    return bandwidth_of_multisine(*halves)
 
 
 def _path(controller: Controller, wanted: np.ndarray, rate: float, vehicle: Vehicle,

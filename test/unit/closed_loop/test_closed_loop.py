@@ -213,6 +213,17 @@ def test_the_bandwidth_of_a_flight_shows_above_the_frequencies_of_a_smooth_path(
     assert list(found.values()) == pytest.approx(corners, rel=0.1)
 
 
+def test_bandwidths_of_all_axes_at_once_are_those_of_each_alone(monkeypatch):
+    # Tilts about two axes make a yaw, which was many times that of the yaw that is asked for.
+    record = flight()
+    found = along(record).bandwidth['corrected']
+    assert found['x'] == pytest.approx(found['y'], rel=0.01)
+    for axis, (name, value) in enumerate(found.items()):
+        monkeypatch.setattr('quad_ident_ros.closed_loop.compare.multisine', lambda rate, axis=axis:
+                            multisine(rate) * np.where(np.arange(4) == axis, 1.0, 1e-3))
+        assert along(record).bandwidth['corrected'][name] == pytest.approx(value, rel=0.01)
+
+
 def test_where_gains_cross_is_found_between_lines():
     f = np.array([0.5, 1.0, 2.0, 4.0])
     assert crossing(f, 1.0 / f) == pytest.approx(2.0 ** 0.5)
