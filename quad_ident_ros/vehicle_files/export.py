@@ -15,6 +15,7 @@ from quad_ident_ros.effects.battery_sag_discharge import ZONE_TIME
 from quad_ident_ros.effects.registry import titled, Values
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.flights import highest_voltage
+from quad_ident_ros.model.motors import are_thrusts
 from quad_ident_ros.model.vehicle import Vehicle
 from quad_ident_ros.vehicle_files.bodies import Body, is_body, nearest_body
 from quad_ident_ros.vehicle_files.edits import Change, differs, Edits, SAME
@@ -22,7 +23,7 @@ from quad_ident_ros.vehicle_files.kinds import Kind, kind_of, KINDS
 from quad_ident_ros.vehicle_files.known import with_errors
 from quad_ident_ros.vehicle_files.out_base import Base
 from quad_ident_ros.vehicle_files.out_body import MOMENTS, PRODUCTS
-from quad_ident_ros.vehicle_files.reading import finished
+from quad_ident_ros.vehicle_files.reading import finished, FULL_SPEED
 from quad_ident_ros.vehicle_files.source import Source
 from quad_ident_ros.vehicle_files.speed_unit import counted, unit_of
 from quad_ident_ros.vehicle_files.target import Code, Target
@@ -85,6 +86,11 @@ def export(vehicle: Vehicle, to: str, source: Source | None = None, sag: float |
     more, near = _constants(vehicle, base, target, edits), _nearest(vehicle, edits, target)
     fates = replace(fates, nearest=(*fates.nearest, *near), not_carried=(
         *fates.not_carried, *more, *_remaining(vehicle, effects, target, edits)))
+    if (are_thrusts(stated.motors) and stated.speed_max == FULL_SPEED
+            and 'motors' not in draft.data):
+        edits.remarks.append(
+            'the vehicle file has thrusts for commands, and no speeds of its rotors: '
+            f'{FULL_SPEED:g} rad/s stand for the most, and the speeds of this file count likewise')
     code = target.code(vehicle, base, name) if target.code else None
     if code is not None:
         fates = fates.with_code([*code.forms, *((each, '') for each in code.constants)],

@@ -30,6 +30,14 @@ def test_what_is_read_is_written_and_read_again_as_it_was(to):
     assert export(once, to, replace(source, text=found.text)).text == found.text
 
 
+@pytest.mark.parametrize('to', [to for to in TARGETS if to != 'px4_sih'])
+def test_speeds_that_stand_for_thrusts_are_said_where_a_file_has_speeds(to):
+    for kind, stand in (('mujoco', True), ('rotorpy', False)):
+        remarks = export(base(kind)[1], to).remarks
+        assert any('rad/s stand for the most' in text for text in remarks) == (
+            stand and to != 'mujoco')
+
+
 @pytest.mark.parametrize('to', TARGETS)
 @pytest.mark.parametrize('name', ['paper_quadrotor', 'hummingbird'])
 def test_a_vehicle_of_a_vehicle_file_goes_into_every_simulator(to, name):
