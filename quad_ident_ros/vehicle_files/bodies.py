@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Container, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -91,6 +91,27 @@ def combined(bodies: Sequence[Body]) -> Body:
         arm = body.centre - centre
         inertia += body.inertia + body.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
     return Body(mass, centre, inertia)
+
+
+def nearest_common(names: Sequence[str], above: Mapping[str, str], known: Container[str]) -> str:
+    """
+    Return the nearest body that several hang on, one of them where it carries the others.
+
+    Args: names: at least one; above: what each hangs on, by name; known: what counts as a body.
+    The first of the names where they hang on nothing together.
+    """
+    chains = [list(_upwards(name, above)) for name in names]
+    return next((name for name in chains[0] if name in known
+                 and all(name in chain for chain in chains)), names[0])
+
+
+def _upwards(name: str, above: Mapping[str, str]) -> Iterator[str]:
+    """Give a name and all that it hangs on, each once."""
+    seen: set[str] = set()
+    while name not in seen:
+        yield name
+        seen.add(name)
+        name = above.get(name, name)
 
 
 def spun(body: Body, axis: ArrayLike) -> Body:

@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from quad_ident_ros.vehicle_files.bodies import Body
+from quad_ident_ros.vehicle_files.bodies import Body, nearest_common
 from quad_ident_ros.vehicle_files.edit_xml import EditedXml
 from quad_ident_ros.vehicle_files.new_urdf import new
 from quad_ident_ros.vehicle_files.out_base import Base
@@ -24,7 +24,7 @@ from quad_ident_ros.vehicle_files.urdf import (
     PYBULLET_GRAVITY,
     rotors_of,
 )
-from quad_ident_ros.vehicle_files.urdf_links import Link, origin_of
+from quad_ident_ros.vehicle_files.urdf_links import end_of, Link, origin_of
 from quad_ident_ros.vehicle_files.ways import BODY, LAGS
 from quad_ident_ros.vehicle_files.xml_tree import Element, parse
 
@@ -56,10 +56,11 @@ def write(base: Base) -> EditedXml:
 
 def _carrier(bodies: dict[str, Body], links: dict[str, Link], rotors: Sequence[Link]) -> str:
     """Return the name of the link that carries the rotors, the heaviest where that has no mass."""
-    joints = [rotor.joint for rotor in rotors if rotor.joint is not None]
-    parent = joints[0].first('parent') if joints else None
-    if parent is not None and parent.get('link') in bodies:
-        return parent.get('link')
+    above = {name: end_of(link.joint, 'parent') for name, link in links.items() if link.joint}
+    parents = [above[name] for rotor in rotors if (name := rotor.element.get('name')) in above]
+    common = nearest_common(parents, above, bodies) if parents else ''
+    if common in bodies:
+        return common
     others = [name for name in bodies if not any(links[name] is rotor for rotor in rotors)]
     return max(others or bodies, key=lambda name: bodies[name].mass)
 
@@ -96,8 +97,9 @@ def _write_body(edited: EditedXml, base: Base, link: Link, body: Body) -> None:
         x, y, z = (float(value) for value in body.centre)
         edited.child(inertial, f'<origin xyz="{x:.12g} {y:.12g} {z:.12g}"/>')
         for axis, value in zip('xyz', (x, y, z), strict=True):
-            edited.note(inertial.place(f'origin {axis}'), 0.0, value, 'm',
-                        wanted.sources['centre'])
+            if value != 0.0:
+                edited.note(inertial.place(f'origin {axis}'), 0.0, value, 'm',
+                            wanted.sources['centre'])
     turned = frame.rotation.T @ body.inertia @ frame.rotation
     size = float(np.max(np.abs(turned)))
     for name, at in ENTRIES.items():

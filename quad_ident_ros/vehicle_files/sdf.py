@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """SDF models of Gazebo with motor plugins."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 import os
 from pathlib import Path
@@ -10,7 +10,14 @@ from pathlib import Path
 import numpy as np
 
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.vehicle_files.bodies import Body, check_body, combined, spun, symmetric
+from quad_ident_ros.vehicle_files.bodies import (
+    Body,
+    check_body,
+    combined,
+    nearest_common,
+    spun,
+    symmetric,
+)
 from quad_ident_ros.vehicle_files.gz_motors import (
     check_numbers,
     motor_plugins,
@@ -98,7 +105,7 @@ def layout_of(draft: Draft, tree: Tree) -> Layout:
     check_numbers([plugin for plugin, _ in plugins])
     joints = [_joint(tree, plugin, scope) for plugin, scope in plugins]
     links = [_link(tree, scope + plugin.link, plugin.element) for plugin, scope in plugins]
-    base = _parent(tree, *joints[0])
+    base = _carrier(tree, joints)
     frame = tree.place_of(base).inverse
     spinning: list[float] = []
     bodies: dict[str, Body] = {}
@@ -199,6 +206,13 @@ def _link(tree: Tree, name: str, element: Element) -> str:
 def _parent(tree: Tree, joint: Element, scope: str) -> str:
     """Return the full name of the link that a rotor's joint hangs on."""
     return _link(tree, scope + child_text(joint, 'parent'), joint)
+
+
+def _carrier(tree: Tree, joints: Sequence[tuple[Element, str]]) -> str:
+    """Return the full name of the link that all rotors hang on, be it by arms of their own."""
+    above = {scope + child_text(joint, 'child'): scope + child_text(joint, 'parent')
+             for joint, scope in tree.joints.values()}
+    return nearest_common([_parent(tree, *joint) for joint in joints], above, tree.links)
 
 
 def _axis(tree: Tree, joint: tuple[Element, str], link: Element) -> np.ndarray:

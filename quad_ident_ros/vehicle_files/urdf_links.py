@@ -65,10 +65,10 @@ def trees_of(root: Element) -> dict[str, dict[str, Link]]:
     above: dict[str, Element] = {}
     for joint in _named(root, 'joint').values():
         for end in ('parent', 'child'):
-            if _end(joint, end) not in links:
-                raise InputError(f'{joint.where}: its {end} {_end(joint, end)[:50]!r} is not a '
+            if end_of(joint, end) not in links:
+                raise InputError(f'{joint.where}: its {end} {end_of(joint, end)[:50]!r} is not a '
                                  'link of the robot')
-        other = above.setdefault(_end(joint, 'child'), joint)
+        other = above.setdefault(end_of(joint, 'child'), joint)
         if other is not joint:
             raise InputError(f'{joint.where}: its child is attached to the joint in line '
                              f'{other.line} too; a URDF is a tree')
@@ -96,7 +96,7 @@ def _place(name: str, links: dict[str, Element], above: dict[str, Element],
         if at in seen:
             raise InputError(f'{above[at].where}: the links form a circle')
         seen.add(at)
-        place, at = origin_of(above[at]) @ place, _end(above[at], 'parent')
+        place, at = origin_of(above[at]) @ place, end_of(above[at], 'parent')
     trees.setdefault(at, {})[name] = Link(links[name], place, above.get(name),
                                           _body(links[name]))
 
@@ -129,7 +129,7 @@ def _named(root: Element, tag: str) -> dict[str, Element]:
     return found
 
 
-def _end(joint: Element, end: str) -> str:
+def end_of(joint: Element, end: str) -> str:
     """Return the name of a joint's parent or child link."""
     element = joint.first(end)
     if element is None:

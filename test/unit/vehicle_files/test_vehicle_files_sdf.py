@@ -138,6 +138,23 @@ def test_the_body_axes_are_those_of_the_link_that_carries_the_rotors():
                                [rotor.position for rotor in still.rotors], atol=1e-9)
 
 
+def test_rotors_on_arms_of_their_own_hang_on_the_link_that_carries_these():
+    arms = ''
+    for k, (x, y) in enumerate(ARMS):
+        arms += LINK.format(name=f'arm_{k}', pose=f'{x / 2} {y / 2} 0.05 0 0 {math.atan2(y, x)}',
+                            inertial='0 0 0 0 0 0', mass=0.03, ixx=1e-6, iyy=3e-5, izz=3e-5)
+        arms += JOINT.format(k=k).replace(f'rotor_{k}', f'arm_{k}').replace('revolute', 'fixed')
+    whole = model(bodies(), arms, motors())
+    apart = re.sub(r'<parent>base_link</parent><child>rotor_(\d)',
+                   r'<parent>arm_\1</parent><child>rotor_\1', whole)
+    assert apart.count('<parent>arm_') == 4
+    vehicle = reading(apart).vehicle
+    assert vehicle == reading(whole).vehicle
+    loaded = replace(vehicle, mass=1.1 * vehicle.mass)
+    assert export(loaded, 'gazebo', Source('model.sdf', apart)).changes == export(
+        loaded, 'gazebo', Source('model.sdf', whole)).changes
+
+
 def test_poses_relative_to_frames_and_in_degrees_are_followed():
     text = WHOLE.replace('<pose>0.2 -0.25 0.06 0.0 0 0</pose>',
                          "<pose relative_to='arm' degrees='true'>0.1 0 0 0 0 90</pose>")

@@ -180,6 +180,20 @@ def test_a_plain_urdf_has_mass_and_places_and_asks_for_the_rest():
     assert reading(drone(axis=-1)).missing == found.missing
 
 
+def test_a_payload_goes_into_the_link_that_carries_the_arms_of_the_rotors():
+    text = drone().replace('rpy="0.1 0.2 0.3"', 'rpy="0 0 0.3"').replace(
+        '<parent link="base_link"/><child link="rotor_0"/>',
+        '<parent link="camera"/><child link="rotor_0"/>')
+    source = Source('drone.urdf', text)
+    vehicle = read_vehicle(source, {'thrust_coefficient': 8e-6, 'torque_over_thrust': 0.02,
+                                    'spins': [-1, -1, 1, 1]}).vehicle
+    found = export(replace(vehicle, mass=vehicle.mass + 0.2), 'urdf', source)
+    assert {change.place: change.new for change in found.changes}['line 4: <mass> value'] == (
+        pytest.approx(1.7))
+    assert text[text.index('<link name="camera">'):] == found.text[
+        found.text.index('<link name="camera">'):]
+
+
 def test_what_floats_in_a_world_is_the_vehicle_in_its_own_axes():
     world = '<link name="world"/><joint name="flies" type="floating"><parent link="world"/>' \
             '<child link="base_link"/><origin xyz="1 2 3" rpy="0 0 1.57"/></joint>'
