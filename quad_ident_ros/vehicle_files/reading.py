@@ -212,6 +212,9 @@ def thrusts_as_commands(draft: Draft, highest: float, ratio: float | None, place
     if ratio is not None:
         draft.take('torque_coefficient', ratio * coefficient, 'N m/(rad/s)^2', place)
     low, high = signal or (lowest, highest)
+    if lowest > 0.0:
+        draft.take('speed_min', FULL_SPEED * math.sqrt(lowest / highest), 'rad/s',
+                   f'taken for {place}')
     draft.take('speed_max', FULL_SPEED, 'rad/s', f'taken for {place}')
     draft.data['motors'] = {'kind': 'normalised', 'minimum': low, 'maximum': high,
                             'thrust': {'offset': lowest, 'gain': highest - lowest,

@@ -85,6 +85,18 @@ def test_a_control_stands_for_its_thrust():
     assert other.torque_coefficient == pytest.approx(vehicle.torque_coefficient)
 
 
+def test_a_range_of_controls_that_begins_above_0_is_a_lowest_speed():
+    text = model().replace('ctrlrange="0 13"', 'ctrlrange="1 13"')
+    vehicle = reading(text).vehicle
+    assert vehicle.thrust_coefficient * vehicle.speed_min ** 2 == pytest.approx(1.0)
+    assert reading(model()).vehicle.speed_min == 0.0
+    source = Source('quad.xml', text)
+    assert export(vehicle, 'mujoco', source).text == text
+    again = reading(export(vehicle, 'mujoco').text).vehicle
+    assert again.speed_min == pytest.approx(vehicle.speed_min)
+    assert not export(vehicle, 'mujoco', source).fates.not_carried
+
+
 def test_a_rotated_inertia_and_a_second_body_add_up_by_the_closed_form():
     # A point of 0.1 kg at (0.3, 0, 0) beside 0.9 kg whose inertia is turned by 30 deg about z.
     turned = '<inertial pos="0 0 0" mass="0.9" diaginertia="0.02 0.03 0.04" euler="0 0 30"/>'
