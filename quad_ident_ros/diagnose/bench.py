@@ -291,6 +291,22 @@ class Bench:
         return {column: error for column, error in found.items()
                 if not EFFECTS[NAMES[column].split('.')[0]].scale_group}
 
+    def shift_by_absent(self, model: Model, probability: Mapping[str, float]) -> np.ndarray:
+        """
+        Return the error (C,) of a Model's columns because effects taken out may be there.
+
+        Beside these the columns have the values of the best set, with the probability of the most
+        probable of them: the root mean square of what either model is off by (Draper, J. R. Stat.
+        Soc. B 57, 1995). Signs are those of the shifts, which come together. probability
+        {effect: of being present}.
+        """
+        best, there = self.selection.best, {cause.effect for cause in model.effects}
+        most = max((probability.get(cause.effect, 0.0) for cause in best.causes
+                    if cause.effect not in there), default=0.0)
+        known = {*best.estimate.columns}
+        return np.array([np.sqrt(most) * (best.estimate.z[column] - model.z[column])
+                         if column in known else 0.0 for column in model.estimate.columns])
+
     def taken_out(self, model: Model) -> list[int]:
         """Return the columns of the best set's effects that a Model has not, but one tied to."""
         best, there = self.selection.best, {*model.effects}

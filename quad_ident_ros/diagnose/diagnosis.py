@@ -130,6 +130,6 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
         findings=(*intake.findings, *advice.at_bounds(judged, vehicle, rules),
                   *advice.by_input_errors(judged)), z=model.z,
         pictures=measure.pictures(bench, judged, before, after),
-        covariance=known_together(bench, model), in_simulator=in_simulator,
+        covariance=known_together(bench, model, judged.probability), in_simulator=in_simulator,
         closed_loop=closed_loop, residual=residual, recorded=came,
         form_errors=selection.joint.form_errors)

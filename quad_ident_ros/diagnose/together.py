@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """How well the parameters that a diagnosis estimated are known together."""
 
+from collections.abc import Mapping
+
 import numpy as np
 from scipy.linalg import block_diag
 
@@ -10,13 +12,15 @@ from quad_ident_ros.greybox.parameters import NAMES
 from quad_ident_ros.model.covariance import Covariance, covariance_of_matrix
 
 
-def known_together(bench: Bench, model: Model) -> Covariance | None:
+def known_together(bench: Bench, model: Model, probability: Mapping[str, float]
+                   ) -> Covariance | None:
     """
     Return the Covariance of a Model's columns, and of constants whose file states a deviation.
 
     None where there is neither. The correlation is that of the Joint of the best set, or that by
     the noise of a model which has other forms; deviations are the reported standard errors, but
     for constants without a stated deviation: the vehicle of this covariance has them as they are.
+    probability {effect: of being present}, of those that the model has not.
     """
     best, joint = bench.selection.best.estimate, bench.selection.joint
     columns, constants = model.estimate.columns, joint.constants
@@ -38,4 +42,6 @@ def known_together(bench: Bench, model: Model) -> Covariance | None:
         first = len(best.columns)
         whole = block_diag(model.estimate.covariance * np.outer(scale, scale),
                            joint.stated[first:, first:])
+    shift = bench.shift_by_absent(model, probability)
+    whole[:len(columns), :len(columns)] += np.outer(shift, shift)
     return covariance_of_matrix((*(NAMES[column] for column in columns), *constants), whole)

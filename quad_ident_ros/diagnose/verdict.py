@@ -5,6 +5,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
+import math
 
 import numpy as np
 
@@ -131,6 +132,8 @@ def _ranking(bench: Bench, judged: Judgement, causes: tuple, total: dict,
     """Return every effect, the named ones by contribution, then the most probable first."""
     z0, model, best = nominal(bench.vehicle), judged.model, bench.selection.best
     errors, by_file = bench.errors(model), bench.errors_by_file(model)
+    by_absent = dict(zip(model.estimate.columns,
+                         bench.shift_by_absent(model, judged.probability), strict=True))
     track = bench.tracks[-1]
     nuisance = model.vectors[-1] - model.z
     before = gaps.gap([gaps.ends(track, bench.vehicle, z0 + nuisance, bench.horizon)])
@@ -147,7 +150,8 @@ def _ranking(bench: Bench, judged: Judgement, causes: tuple, total: dict,
                 name = NAMES[column].split('.')[1]
                 change = (float(z[column] - z0[column])
                           if cause.effect in bench.vehicle.effects else None)
-                std = float(np.hypot(errors[column], by_file.get(column, 0.0)))
+                std = math.hypot(errors[column], by_file.get(column, 0.0),
+                                 by_absent.get(column, 0.0))
                 parameters[name] = Value(float(z[column]), std, units[name], change)
             alone = z0.copy()
             alone[list(cause.columns)] = z[list(cause.columns)]

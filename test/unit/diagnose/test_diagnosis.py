@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from quad_ident_ros.diagnose.diagnosis import diagnose
+from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop
@@ -246,3 +247,20 @@ def test_a_battery_that_empties_is_found_in_a_single_flight():
     record = fly_closed_loop(VEHICLE, truth, 'lissajous', duration=40.0, seed=3, noise=WHITE)
     columns = {name: values for name, values in record.columns.items() if name != 'vbat'}
     check(diagnose([replace(record, columns=columns)], VEHICLE).as_data(), truth)
+
+
+def test_what_is_taken_out_as_improbable_is_in_the_standard_errors_of_the_others():
+    flights = flown({'rotor_drag': {'coefficient': 0.15},
+                     'body_drag': {'horizontal': 0.03, 'vertical': 0.03}})
+    # The second drag is there; who asks for more probability than it has gets the first alone.
+    found = diagnose(flights, VEHICLE, effects=['rotor_drag', 'body_drag'],
+                     rules=replace(RULES, present=0.9))
+    rows = {row.effect: row for row in found.ranking}
+    assert found.verdict[0] == 'rotor_drag' and 'body_drag' not in found.verdict
+    assert 0.5 < rows['body_drag'].probability < 0.9
+    drag = rows['rotor_drag'].parameters['coefficient']
+    assert drag.value - 0.15 > 0.02     # it does the other one's work
+    assert abs(drag.value - 0.15) < 1.5 * drag.std
+    whole = found.covariance
+    place = whole.names.index('rotor_drag.coefficient')
+    assert np.sqrt(whole.matrix[place, place]) == pytest.approx(drag.std, rel=0.2)
