@@ -158,7 +158,7 @@ def _entry(manifest: Path, line: int, names: Sequence[str], row: Sequence[str]) 
     date = date_of(cells['date']) if cells.get('date') else None
     if cells.get('date') and date is None:
         raise InputError(f'{where}, column date: {schema.shown(cells["date"])} is not a date '
-                         'from 2000 on; write 2026-05-14 or 2026-05-14T08:30:00Z')
+                         'from 2000 to 2100; write 2026-05-14 or 2026-05-14T08:30:00Z')
     covariates = {name: _covariate(where, name, cell) for name, cell in cells.items()
                   if name not in COLUMNS and cell}
     path = str(manifest.parent / cells['path'])

@@ -137,6 +137,7 @@ def test_a_manifest_says_all_of_a_flight(tmp_path):
 
 @pytest.mark.parametrize('text, said', [
     ('path,date\na.csv,soon\n', 'line 2, column date: .soon. is not a date'),
+    ('path,date\na.csv,2226-05-14\n', '.2226-05-14. is not a date from 2000 to 2100; write'),
     ('path,temperature_c\na.csv,warm\n', 'line 2, column temperature_c: expected a number'),
     ('path,vehicle\n,seven\n', 'line 2, column path: it is empty'),
     ('path,vehicle\na.csv\n', 'line 2: 1 cells, but 2 columns'),
