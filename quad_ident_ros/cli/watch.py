@@ -80,5 +80,7 @@ def _end_at_hang_up(source):
     forever for the terminal that is gone: nothing of it may be waited for.
     """
     signal.sigwait({signal.SIGHUP})
-    source.close()
-    os._exit(0)
+    try:
+        source.close()
+    finally:
+        os._exit(0)

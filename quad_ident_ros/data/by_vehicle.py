@@ -79,7 +79,9 @@ def _side_by_side(table: Table) -> dict[str, Table]:
 def _before(column: str, bodies: Sequence[str]) -> str:
     """Return what the name of a column begins with that says its vehicle, one of bodies if any."""
     if bodies:
-        return next((f'{body} ' for body in bodies if column.startswith(f'{body} ')), '')
+        # The longest: a body `cf` may be beside a body `cf 2`.
+        return max((f'{body} ' for body in bodies if column.startswith(f'{body} ')), key=len,
+                   default='')
     match = _BEFORE.fullmatch(column)
     return match[1] or match[2] if match else ''
 

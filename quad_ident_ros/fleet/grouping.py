@@ -105,7 +105,7 @@ def taken_together(flights: Iterable[tuple[Listed, Looked]]) -> tuple[str, ...]:
             found.setdefault(name, {})[listed.deeper] = None
         elif not (listed.vehicle or looked.hardware):
             found.setdefault(listed.folder or UNNAMED, {})[
-                str(own_folder(Path(listed.path).parent))] = None
+                str(own_folder(Path(listed.path)))] = None
     return tuple(f'{name}: {", ".join([*some][:SHOWN])}'
                  + (f' and {len(some) - SHOWN} more' if len(some) > SHOWN else '')
                  for name, some in found.items() if len(some) > 1)

@@ -62,7 +62,7 @@ def listed(names: Iterable[str]) -> list[Listed]:
     What a manifest says of a flight goes before what its folders say. Raises InputError, for what
     is not there, too.
     """
-    found: dict[str, Listed] = {}
+    found: dict[str, list[Listed]] = {}
     for name in names:
         path = Path(name)
         if not path.exists():
@@ -70,30 +70,35 @@ def listed(names: Iterable[str]) -> list[Listed]:
                              'them or a manifest')
         if _is_bag(path) or path.is_file() and not is_manifest(path):
             some: Iterable[Listed] = [Listed(str(path), vehicle_file=_nominal_in(path.parent),
-                                             folder=own_folder(path.parent).name)]
+                                             folder=own_folder(path).name)]
         else:
             some = _in_folder(path) if path.is_dir() else _in_manifest(path)
         for one in some:
-            key = os.path.realpath(one.path)
-            found[key] = _both(found[key], one) if key in found else one
+            found.setdefault(os.path.realpath(one.path), []).append(one)
     if not found:
         raise InputError(f'{", ".join(names)}: there is no flight in it; name a folder of tables '
                          '(CSV, Parquet), bags or logs')
-    return list(found.values())
+    return [_merged(said) for said in found.values()]
 
 
-def _both(known: Listed, one: Listed) -> Listed:
-    """Return what is said of a flight that is named twice; InputError where manifests differ."""
-    if not one.place:
-        known, one = one, known
-    if not one.place:
-        return one
-    if known.place and replace(one, path=known.path, folder=known.folder) != known:
-        raise InputError(f'{one.place}: {one.path} is named in {known.place}, with other values; '
-                         'name each flight once')
-    return replace(one, vehicle=one.vehicle or known.vehicle, day=one.day or known.day,
-                   configuration=one.configuration or known.configuration,
-                   vehicle_file=one.vehicle_file or known.vehicle_file)
+def _merged(said: Sequence[Listed]) -> Listed:
+    """Return what is said of one flight, perhaps often; InputError where manifests differ."""
+    by_manifest = [one for one in said if one.place]
+    by_folder = [one for one in said if not one.place]
+    if not by_manifest:
+        return by_folder[0]
+    first, *others = by_manifest
+    for one in others:
+        if replace(one, path=first.path, folder=first.folder) != first:
+            raise InputError(f'{one.place}: {one.path} is named in {first.place}, with other '
+                             'values; name each flight once')
+    if not by_folder:
+        return first
+    known = by_folder[0]
+    return replace(first, vehicle=first.vehicle or known.vehicle, day=first.day or known.day,
+                   configuration=first.configuration or known.configuration,
+                   vehicle_file=first.vehicle_file or known.vehicle_file,
+                   deeper='' if first.vehicle else known.deeper)
 
 
 def is_manifest(path: Path) -> bool:
@@ -153,7 +158,7 @@ def _entry(manifest: Path, line: int, names: Sequence[str], row: Sequence[str]) 
     date = date_of(cells['date']) if cells.get('date') else None
     if cells.get('date') and date is None:
         raise InputError(f'{where}, column date: {schema.shown(cells["date"])} is not a date '
-                         'from 2000 on; write 2026-05-14 or 2026-05-14T08:30:00Z')
+                         'from 2000 to 2100; write 2026-05-14 or 2026-05-14T08:30:00Z')
     covariates = {name: _covariate(where, name, cell) for name, cell in cells.items()
                   if name not in COLUMNS and cell}
     path = str(manifest.parent / cells['path'])
@@ -162,7 +167,7 @@ def _entry(manifest: Path, line: int, names: Sequence[str], row: Sequence[str]) 
     return Listed(path, cells.get('vehicle', ''), cells.get('configuration', ''), date, '',
                   cells.get('group', ''),
                   str(beside) if nominal and beside.is_file() else nominal,
-                  own_folder(Path(path).parent).name, '', covariates, where)
+                  own_folder(Path(path)).name, '', covariates, where)
 
 
 def _covariate(where: str, name: str, cell: str) -> float:
@@ -176,7 +181,7 @@ def _covariate(where: str, name: str, cell: str) -> float:
 
 def _in_folder(top: Path) -> Iterator[Listed]:
     """Yield the flights below a folder, which the folders between say more of."""
-    name = own_folder(top).name
+    name = _no_day(top).name
     for path, nominal in _below(top, '', frozenset()):
         folders = path.relative_to(top).parts[:-1]
         if _is_of_open_bag(path):
@@ -192,7 +197,13 @@ def _deeper(top: Path, folders: Sequence[str]) -> str:
     return str(top.joinpath(*folders[:third[0]])) if third else ''
 
 
-def own_folder(folder: Path) -> Path:
+def own_folder(flight: Path) -> Path:
+    """Return the folder that a flight is in, or the next one above whose name is no day."""
+    folder = flight.parent
+    return _no_day(folder.parent if _is_of_open_bag(flight) else folder)
+
+
+def _no_day(folder: Path) -> Path:
     """Return a folder, or the next one above whose name is no day."""
     whole = Path(os.path.abspath(folder))       # without a `..`, which is no name
     return next(one for one in (whole, *whole.parents) if not is_day(one.name))

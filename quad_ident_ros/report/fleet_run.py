@@ -176,7 +176,8 @@ def summary_text(summary: Summary, out: str | Path) -> str:
         lines.append(f'{counted(len(summary.undated), "flight")} without a date in manifest, log '
                      'or name, dated by the last change of the file, which a copy may not keep: '
                      f'{", ".join(summary.undated[:3])}'
-                     + (' ...' if len(summary.undated) > 3 else ''))
+                     + (' ...' if len(summary.undated) > 3 else '')
+                     + '; write dates into a manifest or into the names')
     if summary.replaced:
         lines.append(f'{counted(summary.replaced, "group")} not counted: another run has put the '
                      'flights into groups of its own meanwhile')

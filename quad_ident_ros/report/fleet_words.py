@@ -241,7 +241,8 @@ def _apart(found: Insight) -> list[Point]:
     return [Point(APART, found.apart[0][0],
                   f'{counted(count, "flight")} not compared over time, because their '
                   f'nominal vehicle differs from that of the last flight: {names}; name them '
-                  'again with its vehicle file, or give them a configuration of their own')]
+                  'again with the vehicle file of that flight, or give them a configuration of '
+                  'their own')]
 
 
 def _signed(part: Part) -> str:

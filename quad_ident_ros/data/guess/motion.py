@@ -188,11 +188,16 @@ def _by_tilt(draft: Draft, names: Sequence[str]) -> str:
 
 
 def _nearest(draft: Draft, values: np.ndarray, unit: str) -> str:
-    """Return the unit in which velocities (N, 3) go with the other streams, that given if open."""
-    off = {one: min(found) for one in ('m/s', 'cm/s', 'mm/s')
-           if (found := _off(draft, values * factor_of('vx', one))) is not None}
+    """
+    Return the unit in which velocities (N, 3) go with the other streams, that given if open.
+
+    They have to do so better than no velocity: noise in hover is least off in the smallest unit.
+    """
+    factors = {'': 0.0, **{one: factor_of('vx', one) for one in ('m/s', 'cm/s', 'mm/s')}}
+    off = {one: min(found) for one, factor in factors.items()
+           if (found := _off(draft, values * factor)) is not None}
     best = min(off, key=off.__getitem__, default=unit)
-    return best if off and BETTER * off[best] < off[unit] else unit
+    return best if off and BETTER * off[best] < min(off[unit], off['']) else unit
 
 
 def _off(draft: Draft, speed: np.ndarray) -> list[float] | None:

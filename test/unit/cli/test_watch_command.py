@@ -3,6 +3,7 @@
 """`quad_ident watch` where it cannot show anything: one line and exit code 2."""
 
 import re
+import subprocess
 import sys
 from types import SimpleNamespace
 
@@ -62,3 +63,20 @@ def test_without_ros_it_says_where_to_get_it(capsys, terminal, without_ros):
 def test_without_both_it_names_both_in_one_line(capsys, terminal, without_ros, without_textual):
     said = refusal(capsys)
     assert 'error: ROS 2 is not installed' in said and '[watch]' in said
+
+
+def test_a_hang_up_ends_it_whatever_becomes_of_the_graph():
+    """As where it is being left already, after q."""
+    code = """
+import os, signal, threading
+from types import SimpleNamespace
+from quad_ident_ros.cli import watch
+signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGHUP})
+source = SimpleNamespace(close=lambda: 1 / 0)
+threading.Thread(target=watch._end_at_hang_up, args=(source,), daemon=True).start()
+os.kill(os.getpid(), signal.SIGHUP)
+threading.Event().wait(30.0)
+os._exit(3)
+"""
+    assert subprocess.run([sys.executable, '-c', code], capture_output=True,
+                          timeout=120).returncode == 0

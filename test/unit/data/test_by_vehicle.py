@@ -124,7 +124,7 @@ def test_two_objects_of_vicon_are_a_flight_of_each(tmp_path):
     assert [record.info['name'] for record in found] == ['swarm_cf1', 'swarm_cf2']
 
 
-@pytest.mark.parametrize('names', [('Alice', 'Bob'), ('cf1', 'cf2')])
+@pytest.mark.parametrize('names', [('Alice', 'Bob'), ('cf1', 'cf2'), ('cf', 'cf 2')])
 def test_two_bodies_of_motive_are_a_flight_of_each(tmp_path, names):
     """Their markers are no vehicles."""
     bodies = {name: (record.stack('qx', 'qy', 'qz', 'qw'), record.stack(*PLACE))

@@ -373,6 +373,22 @@ def test_the_unit_of_a_velocity_is_told_by_the_other_streams(tmp_path, place):
     assert 'vx, vy, vz: velocity in cm/s, world axes' in ' '.join(read.info['notes'])
 
 
+@pytest.mark.parametrize('place', [False, True])
+@pytest.mark.parametrize('noise', [0.02, 0.1])
+def test_a_velocity_that_is_all_noise_in_hover_has_the_usual_unit(tmp_path, noise, place):
+    """In a smaller unit there is less of it, and less that no other stream shows."""
+    rng, ones = np.random.default_rng(0), np.ones(len(T))
+    speed = noise * rng.standard_normal((len(T), 3))
+    hover = {'time': T, **named(['vx', 'vy', 'vz'], speed),
+             **named(Q, np.outer(ones, [1.0, 0.0, 0.0, 0.0])),
+             **named(['acc_x', 'acc_y', 'acc_z'], np.outer(ones, [0.0, 0.0, 9.81])
+                     + 0.05 * rng.standard_normal((len(T), 3)))}
+    if place:
+        hover |= named('xyz', np.outer(ones, [0.0, 0.0, 1.0])
+                       + 1e-3 * rng.standard_normal((len(T), 3)))
+    np.testing.assert_allclose(load(table(tmp_path, hover)).stack(*SPEED), speed, atol=1e-9)
+
+
 @pytest.mark.parametrize('size', [0.4, 1.0, 2.5])
 @pytest.mark.parametrize('turned', [False, True])
 def test_an_acceleration_without_gravity_is_no_specific_force_in_any_unit(tmp_path, size, turned):

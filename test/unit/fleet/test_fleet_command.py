@@ -113,7 +113,7 @@ def test_the_end_says_which_flights_nothing_dates_but_their_files():
     text = summary_text(Summary(12, groups, 7, (), undated=tuple('abcd')), 'out')
     assert text.splitlines()[1] == (
         '4 flights without a date in manifest, log or name, dated by the last change of the file, '
-        'which a copy may not keep: a, b, c ...')
+        'which a copy may not keep: a, b, c ...; write dates into a manifest or into the names')
 
 
 def test_the_end_says_which_groups_have_no_values_of_single_flights():

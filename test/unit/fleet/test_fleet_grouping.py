@@ -17,7 +17,7 @@ from quad_ident_ros.model.vehicle import load_vehicle
 
 pytest.importorskip('pyarrow', reason="pyarrow is not installed: pip install '.[fleet]'")
 from quad_ident_ros.fleet import look as look_module  # noqa: E402, I100
-from quad_ident_ros.fleet.grouping import groups_of  # noqa: E402, I100
+from quad_ident_ros.fleet.grouping import groups_of, taken_together  # noqa: E402, I100
 from quad_ident_ros.fleet.look import has_to_be_read, look, Looks  # noqa: E402, I100
 from quad_ident_ros.fleet.store import keys_of, write_rows  # noqa: E402, I100
 from quad_ident_ros.fleet.superseded import remove_group, superseded_by  # noqa: E402, I100
@@ -90,6 +90,16 @@ def test_the_same_content_is_one_flight(tmp_path):
     flights = [flight(tmp_path, name, 'a') for name in ('a.csv', 'b.csv')]
     [group], again = grouped(flights)
     assert len(group.flights) == 1 and again == flights[1:]
+
+
+def test_bags_that_are_still_recorded_to_are_not_several_vehicles(tmp_path):
+    flights = []
+    for name in ('one', 'two'):
+        path = tmp_path / name / f'{name}_0.mcap'
+        path.parent.mkdir()
+        path.write_bytes(b'')
+        flights.append(Listed(str(path), folder=tmp_path.name))
+    assert taken_together((one, look(one)) for one in flights) == ()
 
 
 def test_what_was_looked_at_is_known_until_it_changes(tmp_path):

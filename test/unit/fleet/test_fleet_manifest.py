@@ -72,6 +72,13 @@ def test_flights_that_are_named_one_by_one_are_of_the_vehicle_of_their_folder(tm
     assert [one.folder for one in listed([str(manifest)])] == ['seven', tmp_path.parent.name]
 
 
+def test_the_folder_of_a_bag_that_is_still_recorded_to_is_no_vehicle(tmp_path):
+    bag = write(tmp_path / 'seven' / '2026-05-14' / 'noon' / 'noon_0.mcap')
+    manifest = write(tmp_path / 'm.csv', f'path\n{bag}\n')
+    for name in (bag, bag.parents[1], manifest):
+        assert [one.folder for one in listed([str(name)])] == ['seven']
+
+
 def test_the_nearest_vehicle_file_above_a_flight_is_its_nominal_one(tmp_path):
     fleets, own = write(tmp_path / 'vehicle.yaml', 'a: 1'), write(
         tmp_path / 'seven' / 'vehicle.yaml', 'a: 1')
@@ -130,6 +137,7 @@ def test_a_manifest_says_all_of_a_flight(tmp_path):
 
 @pytest.mark.parametrize('text, said', [
     ('path,date\na.csv,soon\n', 'line 2, column date: .soon. is not a date'),
+    ('path,date\na.csv,2226-05-14\n', '.2226-05-14. is not a date from 2000 to 2100; write'),
     ('path,temperature_c\na.csv,warm\n', 'line 2, column temperature_c: expected a number'),
     ('path,vehicle\n,seven\n', 'line 2, column path: it is empty'),
     ('path,vehicle\na.csv\n', 'line 2: 1 cells, but 2 columns'),
@@ -190,6 +198,24 @@ def test_manifests_that_say_different_things_of_a_flight_are_refused(tmp_path):
     with pytest.raises(InputError, match=r'n\.csv, line 2: .*a\.csv is named in .*m\.csv, line 2'):
         listed(names[:2])
     assert [one.vehicle for one in listed(names[::2])] == ['seven']
+
+
+def test_manifests_that_say_the_same_may_stand_beside_the_folder(tmp_path):
+    path = write(tmp_path / 'all' / 'seven' / 'a.csv')
+    names = [str(write(tmp_path / f'{name}.csv', f'path,temperature_c\n{path},20\n'))
+             for name in 'mn']
+    for order in ([str(tmp_path / 'all'), *names], [*names, str(tmp_path / 'all')]):
+        one, = listed(order)
+        assert one.vehicle == 'seven' and one.covariates == {'temperature_c': 20.0}
+
+
+@pytest.mark.parametrize(('vehicle', 'open_to_doubt'), [('', True), ('seven', False)])
+def test_whose_a_flight_is_stays_in_doubt_unless_the_manifest_says_it(tmp_path, vehicle,
+                                                                      open_to_doubt):
+    path = write(tmp_path / 'all' / '2026' / '05' / 'seven' / 'a.csv')
+    manifest = write(tmp_path / 'm.csv', f'path,vehicle,temperature_c\n{path},{vehicle},20\n')
+    one, = listed([str(manifest), str(tmp_path / 'all')])
+    assert one.deeper == (str(path.parent) if open_to_doubt else '')
 
 
 def test_a_file_of_the_system_without_a_size_is_not_read(tmp_path):
