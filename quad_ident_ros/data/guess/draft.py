@@ -126,7 +126,7 @@ class Draft:
 
     @property
     def states(self) -> list[str]:
-        """The columns that are free and not named as states that are asked for."""
+        """Return the columns that are free and not named as states that are asked for."""
         return [name for name in self.free if not WANTED.search(self.names[name])]
 
     def one(self, pattern: str, names: Sequence[str] | None = None) -> str | None:

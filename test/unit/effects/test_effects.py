@@ -69,8 +69,8 @@ def test_the_vector_and_the_mapping_of_effects_are_one_another_s_inverse():
 
 
 def test_what_a_rotor_has_is_known_of_the_rotors_that_a_vehicle_has():
-    names = {kind: [f'rotor_fault.{kind}_{j}' for j in range(1, 7)] for kind in ('loss',
-                                                                                'loss_both')}
+    names = {kind: [f'rotor_fault.{kind}_{j}' for j in range(1, 7)]
+             for kind in ('loss', 'loss_both')}
     known = [name for name in units(6) if name.startswith('rotor_fault')]
     assert known == names['loss'] + names['loss_both']
     assert list(columns_of_names(['rotor_fault'], HEXA)) == names['loss']

@@ -440,7 +440,6 @@ def test_a_flight_that_is_new_in_a_group_that_fails_is_recorded_beside_the_older
     assert (row['status'], row['flights']) == ('refused', 2)
 
 
-
 @pytest.mark.parametrize('fleet', [failing_elsewhere], indirect=True)
 @pytest.mark.parametrize('removed', range(6))
 def test_nothing_stays_of_a_group_whose_removal_was_cut_short(fleet, monkeypatch, removed):
@@ -502,8 +501,8 @@ def test_findings_are_of_the_flight_whose_file_has_them(tmp_path, monkeypatch):
     monkeypatch.setattr(work, 'diagnose', quick)
     assert work.work(group, tmp_path / 'out').status == 'diagnosed'
     rows = read_table(tmp_path / 'out', 'flights', ['path', 'findings']).to_pylist()
-    found = {row['path'].split('/')[-2]: re.findall(r'jumps by 20 m at t = ([\d.]+)',
-                                                      ' '.join(row['findings'])) for row in rows}
+    jump = re.compile(r'jumps by 20 m at t = ([\d.]+)')
+    found = {row['path'].split('/')[-2]: jump.findall(' '.join(row['findings'])) for row in rows}
     assert found == {'1': [], '2': ['4.50'], '3': ['5.50']}
     of_group, = read_table(tmp_path / 'out', 'groups')['findings'].to_pylist()
     assert any(one.startswith('2/flight (2 parts): ') for one in of_group)

@@ -142,7 +142,7 @@ def test_what_a_diagnosis_knows_of_effects_becomes_standard_errors_of_the_number
 
 
 def test_a_rotor_that_turns_more_slowly_is_one_number_of_gazebo():
-    """momentConstant is the ratio of its torque to its thrust, which both fall."""
+    """The momentConstant is the ratio of its torque to its thrust, which both fall."""
     source, vehicle = base('gazebo')
     weak = replace(vehicle, effects={**vehicle.effects, 'rotor_fault': {'loss_both_3': 0.15}})
     found = export(weak, 'gazebo', source)
