@@ -69,7 +69,7 @@ def _with_inputs(record: FlightRecord, vehicle: Vehicle) -> FlightRecord:
         return record
     wanted = [f'cmd{i}' for i in range(1, len(vehicle.rotors) + 1)]
     if set(commands) != set(wanted):
-        raise InputError(f'the record has {len(commands)} rotor commands and the vehicle '
+        raise InputError(f'{record.label()} has {len(commands)} rotor commands and the vehicle '
                          f'{vehicle.name} {len(wanted)} rotors: name its vehicle')
     speeds = record.stack(*wanted)
     beyond = np.abs(speeds) > FASTEST
