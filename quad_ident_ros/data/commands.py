@@ -31,14 +31,15 @@ def with_commands(record: FlightRecord, vehicle: Vehicle) -> FlightRecord:
 
     With more than four rotors these are the smallest. Inputs that no rotor speeds give become
     rotors at rest. Where it has no inputs either, measured rotor speeds take their place, those
-    between two samples held from the first to the second.
+    between two samples held from the first to the second; a record with the commands of some
+    rotors alone is returned as it is.
     """
     names = [f'cmd{j}' for j in range(1, len(vehicle.rotors) + 1)]
     measured = [f'rotor{j}' for j in range(1, len(vehicle.rotors) + 1)]
     if record.has(*names):
         return record
     if not record.has(*INPUTS):
-        if not record.has(*measured):
+        if not record.has(*measured) or any(map(record.has, names)):
             return record
         speeds = record.stack(*measured)
         speeds[:-1] = (speeds[:-1] + speeds[1:]) / 2.0
@@ -68,7 +69,7 @@ def _with_inputs(record: FlightRecord, vehicle: Vehicle) -> FlightRecord:
         return record
     wanted = [f'cmd{i}' for i in range(1, len(vehicle.rotors) + 1)]
     if set(commands) != set(wanted):
-        raise InputError(f'the record has {len(commands)} rotor commands and the vehicle '
+        raise InputError(f'{record.label()} has {len(commands)} rotor commands and the vehicle '
                          f'{vehicle.name} {len(wanted)} rotors: name its vehicle')
     speeds = record.stack(*wanted)
     beyond = np.abs(speeds) > FASTEST

@@ -110,8 +110,14 @@ def vector(effects: Mapping[str, Mapping[str, float]], vehicle: Vehicle,
     low, high, _ = bounds(vehicle)
     schema.check_keys(where, effects, EFFECTS)
     for name, values in effects.items():
-        known = EFFECTS[name].parameters_for(len(vehicle.rotors))
-        schema.check_keys(f'{where}: {name}', values, [one.name for one in known])
+        rotors = len(vehicle.rotors)
+        known = [one.name for one in EFFECTS[name].parameters_for(rotors)]
+        if isinstance(values, Mapping):
+            beyond = [key for key in values if key not in known and (name, key) in PLACE]
+            if beyond:
+                raise InputError(f'{where}: {name}: {beyond[0]!r} is of a rotor that '
+                                 f'{vehicle.name} does not have: its rotors are 1 to {rotors}')
+        schema.check_keys(f'{where}: {name}', values, known)
         for key, value in values.items():
             place = PLACE[name, key]
             theta[place] = schema.number(f'{where}: {name}: {key}', value, low[place], high[place])

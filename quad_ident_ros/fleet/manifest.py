@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 import csv
 from dataclasses import dataclass, field, replace
 from datetime import datetime
+import difflib
 import os
 from pathlib import Path
 import re
@@ -19,6 +20,8 @@ from quad_ident_ros.fleet.folders import whose
 
 COLUMNS = ('path', 'vehicle', 'configuration', 'date', 'group', 'vehicle_file')
 """What the columns of a manifest are called; each further one has numbers: a covariate."""
+
+MISSPELT = 0.85     # likeness from which on a name is one of these: `rate` and `date` have 0.75
 
 UNNAMED = 'Unnamed:'
 """What pandas calls a column without a name, when it has read one and writes it again."""
@@ -125,9 +128,10 @@ def _in_manifest(path: Path) -> Iterator[Listed]:
                 raise InputError(f'{path}, line 1: there is no column `path`; write the names as '
                                  f'{",".join(COLUMNS)}, with commas, of which only path is needed')
             for name in names:
-                if name not in COLUMNS and name.lower() in COLUMNS:
+                near = difflib.get_close_matches(name.lower(), COLUMNS, 1, MISSPELT)
+                if name not in COLUMNS and near:
                     raise InputError(f'{path}, line 1: the column {name} is not known; write '
-                                     f'{name.lower()}')
+                                     f'{near[0]}, or give a covariate a name that differs more')
             if len(set(filter(None, names))) < sum(map(bool, names)):
                 raise InputError(f'{path}, line 1: a column is named twice; name each once')
             found: dict[str, Listed] = {}

@@ -101,7 +101,8 @@ def signals(record: FlightRecord, *, trim: Sequence[float] | None = None,
     or gaps that cannot be bridged.
     """
     if len(record) < FEWEST:
-        raise InputError(f'the record has {len(record)} samples; at least {FEWEST} are needed')
+        raise InputError(f'{record.label()} has {len(record)} samples; at least {FEWEST} are '
+                         'needed')
     inputs, measured, there = _columns(record)
     _check_size(record.t, inputs, measured)
     t, inputs, measured, there_at, remarks = _even_grid(record.t, inputs, measured)
@@ -210,7 +211,7 @@ def _columns(record: FlightRecord) -> tuple[np.ndarray, np.ndarray, list[str]]:
              if recorded[INPUT_OF[name]] and (record.has('pz') if name == 'z' else euler)]
     if not there:
         if not any(recorded.values()) and record.has('cmd1'):
-            raise InputError('the record has rotor commands and no inputs u1..u4: name its '
+            raise InputError(f'{record.label()} has rotor commands and no inputs u1..u4: name its '
                              'vehicle, from which they follow (--vehicle)')
         if euler and record.has(*MOMENTS):
             raise InputError(NO_ARM)
@@ -218,8 +219,8 @@ def _columns(record: FlightRecord) -> tuple[np.ndarray, np.ndarray, list[str]]:
             record.inputs()
         if not euler and not record.has('pz'):
             record.euler()
-        raise InputError('the record has no output together with its input: roll needs u2, pitch '
-                         'u3, yaw u4, and altitude pz with u1')
+        raise InputError(f'{record.label()} has no output together with its input: roll needs u2, '
+                         'pitch u3, yaw u4, and altitude pz with u1')
     none = np.zeros(len(record))
     inputs = np.column_stack([record.columns.get(f'u{i}', none) for i in range(1, 5)])
     angles = record.euler() if euler else np.zeros((len(record), 3))

@@ -133,6 +133,11 @@ def vehicle_from_mapping(data: Any, where: str) -> Vehicle:
     known = [field.name for field in fields(Vehicle)
              if field.name not in ('uncertainty', 'products')]
     required = known[:7]
+    if isinstance(data, dict):
+        for key in data:
+            if key in registry.EFFECTS:
+                raise InputError(f'{where}: {key!r} is an effect; write it under the key '
+                                 f'`effects`: effects: {{{key}: ...}}')
     schema.check_keys(where, data, known, required)
     values: dict[str, Any] = {'name': schema.name(f'{where}: name', data['name'])}
     stds: dict[str, Uncertainty | None] = {}

@@ -31,9 +31,20 @@ MOST_ROTORS = 6           # of which all orders are tried
 
 
 def count(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
-    """Find more or fewer columns cmd1..N than the vehicle has rotors."""
+    """Find more or fewer columns cmd1..N than the vehicle has rotors, and numbers left out."""
     names = record.numbered('cmd')
-    if vehicle is None or not names or len(names) == len(vehicle.rotors):
+    if vehicle is None or len(names) == len(vehicle.rotors):
+        return []
+    wanted = [f'cmd{j}' for j in range(1, len(vehicle.rotors) + 1)]
+    if any(map(record.has, wanted[len(names):])):
+        missing = [name for name in wanted if not record.has(name)]
+        return [Finding(
+            'rotor_count', 'error', ', '.join(missing),
+            f'missing: the record has the commands of {len(wanted) - len(missing)} of the '
+            f'{len(wanted)} rotors of {vehicle.name}',
+            'add them, or leave out all columns cmd1, cmd2, ... so that measured rotor speeds '
+            'drive the model')]
+    if not names:
         return []
     return [Finding(
         'rotor_count', 'error', f'{names[0]} to {names[-1]}',
@@ -58,7 +69,7 @@ def size(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
         'vehicle_size', 'error', 'vehicle file',
         f'the moments of inertia about x and y are {shares[0]:.2g} and {shares[1]:.2g} times mass '
         f'times arm length squared, with arms of {vehicle.arm_length:.3g} m; usual are 0.1 to 0.5',
-        'give the positions of the rotors in m and the inertia in kg m^2')]
+        'give the mass in kg, the positions of the rotors in m and the inertia in kg m^2')]
 
 
 def order_and_spin(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:

@@ -61,7 +61,8 @@ def carried(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
                 f'for {off.sum() * grid.period:.1f} s the commands give {what} the thrust by '
                 f'which {vehicle.name} flies: they are stuck, belong to something else, or the '
                 'vehicle file is of another vehicle',
-                without(grid.t, bad, 'record the commands that the rotors follow in rad/s')))
+                without(grid.t, bad, 'record the commands that the rotors follow in rad/s, and '
+                        'give the thrust coefficient in N/(rad/s)^2')))
     return found
 
 

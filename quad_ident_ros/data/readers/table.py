@@ -207,6 +207,8 @@ def _stream(table: Table, kind: str, name: str) -> Content:
 def _doubtful(path: Path, table: Table, found: Guess) -> str:
     """Return the message of a table that names and values do not explain."""
     lines = flow(found.mapping)
+    if 't' not in found.mapping.columns:
+        lines = lines.replace('columns: {', 'columns: {t: COLUMN, ', 1)
     if len(lines) > 300:
         lines = lines[:lines.rindex(', ', 0, 300)] + ', ...}'
     texts = f' (of text: {shown(table.text, 5)})' if table.text else ''

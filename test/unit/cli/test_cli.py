@@ -106,8 +106,8 @@ def test_inputs_come_from_rotor_commands_with_the_vehicle_named(flights, tmp_pat
         gains.append(json.loads(out.read_text())['methods']['vp']['outputs']['z']['K'])
     assert gains[1] == pytest.approx(gains[0], rel=1e-6)
     assert main(['identify', str(path), *arguments, str(out)]) == 2
-    assert '--vehicle' in capsys.readouterr().err
-    with pytest.raises(InputError, match='4 rotor commands .* 8 rotors'):
+    assert f'{path} has rotor commands and no inputs' in capsys.readouterr().err
+    with pytest.raises(InputError, match='commands.csv has 4 rotor commands .* 8 rotors'):
         with_inputs(read_csv(path), replace(vehicle, rotors=2 * vehicle.rotors))
 
 

@@ -19,6 +19,7 @@ from quad_ident_ros.data.load import load
 from quad_ident_ros.data.mapping import mapping_from
 from quad_ident_ros.data.quality import cautions, findings, refuted
 from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import SENSORS
@@ -40,6 +41,17 @@ def test_every_wrong_order_of_the_rotors_is_found_and_named(order):
 def test_the_commands_of_another_vehicle_are_found(columns):
     [finding] = findings(changed(flight(), **columns), VEHICLE)
     assert finding.code == 'rotor_count' and finding.severity == 'error'
+
+
+@pytest.mark.parametrize('lost', ['cmd1', 'cmd3'])
+def test_measured_speeds_do_not_hide_that_a_command_is_missing(lost):
+    record = flight()
+    speeds = named([f'rotor{j}' for j in range(1, 5)], record.stack(*CMD))
+    record = changed(record, **{lost: None}, **speeds)
+    [finding] = [one for one in findings(record, VEHICLE) if one.code == 'rotor_count']
+    assert finding.severity == 'error' and finding.where == lost
+    with pytest.raises(InputError, match=f'{lost}: missing: .* 3 of the 4 rotors'):
+        diagnose([record, flight(seed=2)], VEHICLE)
 
 
 @pytest.mark.slow
@@ -86,6 +98,9 @@ def test_arms_or_inertia_in_another_unit_are_found(arms, inertia):
         for rotor in VEHICLE.rotors))
     [found] = [one for one in findings(flight(), wrong) if one.code == 'vehicle_size']
     assert found.severity == 'error' and 'kg m^2' in found.remedy
+    [found] = [one for one in findings(flight(), replace(VEHICLE, mass=1000.0 * VEHICLE.mass))
+               if one.code == 'vehicle_size']
+    assert 'mass in kg' in found.remedy
     assert not [one for one in findings(flight(), VEHICLE) if one.code == 'vehicle_size']
 
 
@@ -286,3 +301,10 @@ def test_rotor_speeds_beside_a_simulator_whose_commands_are_thrusts_are_told_fro
     assert said.endswith('take its motors out: the speeds that it has only stand for thrusts')
     other = replace(vehicle, motors=None)
     assert not any('take its motors out' in one.remedy for one in findings(record, other))
+
+
+def test_a_thrust_coefficient_per_rpm_squared_is_refused_with_its_unit():
+    per_rpm = replace(VEHICLE, thrust_coefficient=VEHICLE.thrust_coefficient * (np.pi / 30.0) ** 2,
+                      speed_max=np.inf)
+    [found] = [one for one in findings(flight(), per_rpm) if one.code == 'thrust']
+    assert 'the thrust coefficient in N/(rad/s)^2' in found.remedy

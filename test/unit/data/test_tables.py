@@ -283,7 +283,7 @@ def test_what_is_in_doubt_is_asked_with_the_lines_to_write(tmp_path):
                             **dict.fromkeys(('x', 'y', 'z'), FLIGHT.t)})
     refused(path, "'frame' counts at a rate that the table does not say", 'unit: 100 Hz')
     path = table(tmp_path, dict.fromkeys(('x', 'y', 'z'), np.sin(FLIGHT.t)))
-    refused(path, 'no column of a time')
+    refused(path, 'no column of a time', 'columns: {t: COLUMN')
 
 
 def test_a_cell_that_is_no_number_is_named_with_its_line(tmp_path):

@@ -147,6 +147,8 @@ def test_a_manifest_says_all_of_a_flight(tmp_path):
     ('Path,vehicle\na.csv,seven\n', 'line 1: there is no column `path`'),
     ('path,vehicle\na.csv,seven\na.csv,eight\n', 'line 3: .*a.csv is named above already'),
     ('path,Vehicle\na.csv,7\n', 'line 1: the column Vehicle is not known; write vehicle'),
+    ('path,vehcle\na.csv,7\n', 'line 1: the column vehcle is not known; write vehicle, or'),
+    ('path,grup,rate\na.csv,1,2\n', 'line 1: the column grup is not known; write group'),
     (',path\n0,a.csv\n', 'line 2, column 1: it has no name in line 1; .*index=False'),
     ('Unnamed: 0,path\n0,a.csv\n', 'line 2, column 1: it has no name in line 1; .*index=False'),
     ('path,vehicle\na\0.csv,seven\n', 'm.csv.*NUL|line 2, column path: it is empty, or no name'),

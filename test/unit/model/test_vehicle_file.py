@@ -115,8 +115,10 @@ def test_effects_are_read_and_null_ones_are_none():
     ({'wind': {'x': 400}}, 'effects: wind: x: 400 is out of range, expected >= -20 and <= 20'),
     # In units of the vehicle's mass, 0.65 kg.
     ({'mass_offset': {'mass': -0.5}}, 'mass: -0.5 is out of range, expected >= -0.39'),
-    ({'rotor_fault': {'loss_5': 0.1}}, "effects: rotor_fault: 'loss_5' is not known here"),
-    ({'rotor_fault': {'loss_both_5': 0.1}}, "rotor_fault: 'loss_both_5' is not known here"),
+    ({'rotor_fault': {'loss_5': 0.1}},
+     "effects: rotor_fault: 'loss_5' is of a rotor that paper_quadrotor does not have"),
+    ({'rotor_fault': {'loss_both_5': 0.1}}, 'does not have: its rotors are 1 to 4'),
+    ({'rotor_fault': {'loss_both_9': 0.1}}, "rotor_fault: 'loss_both_9' is not known here"),
     (['wind'], 'effects: expected `key: value` lines'), (None, 'effects: expected'),
 ], ids=str)
 def test_bad_effects_are_refused(effects, words):
@@ -280,6 +282,8 @@ def test_numbers_that_yaml_takes_for_text_are_numbers():
 
 @pytest.mark.parametrize(('values', 'words'), [
     ({'mas': 0.6}, "'mas' is not known here; did you mean 'mass'?"),
+    ({'rotor_fault': {'loss_2': 0.1}},
+     "'rotor_fault' is an effect; write it under the key `effects`: effects: {rotor_fault: ...}"),
     ({'linear_darg': [0, 0, 0]}, "did you mean 'linear_drag'?"),
     ({'colour': 'red'}, 'known are covariance, effects, gravity, inertia'),
     ({'mass': None}, "'mass' is missing"), ({'rotors': None}, "'rotors' is missing"),
