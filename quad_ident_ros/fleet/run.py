@@ -289,7 +289,8 @@ def _remove_replaced(out: str | Path, replaced: dict[str, list[str]], status: di
 def _track_all(client: Any, groups: Sequence[Group], out: str | Path, time_limit: float,
                tell: Tell) -> tuple[str, ...]:
     """Fit the effects of each vehicle to its flights; return why groups failed, for each one."""
-    effects = tracked_effects(read_table(out, 'effects', ['vehicle', 'effect', 'form', 'named']))
+    effects = tracked_effects(read_table(
+        out, 'effects', ['group', 'vehicle', 'effect', 'form', 'named']))
     status = _statuses(out)
     wanted = [Tracking(group, effects[group.vehicle]) for group in groups
               if status.get(group.key) == DIAGNOSED and effects.get(group.vehicle)]

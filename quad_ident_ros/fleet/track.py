@@ -21,6 +21,9 @@ from quad_ident_ros.greybox.fit import Fit, fit
 from quad_ident_ros.greybox.taken_in import taken_in
 
 MOST = 0.5      # share of the fleet's vehicles from which on an effect is compared in all of them
+TOGETHER = 0.5  # share of verdicts with one of two effects from which on both are there
+
+Forms = Mapping[str, Mapping[str, int]]     # {effect: {form: how often it is named}}
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +47,8 @@ def tracked_effects(effects: pyarrow.Table) -> dict[str, dict[str, str]]:
     For each vehicle the effects that most vehicles have, and those that any of its groups names;
     each in the form that its groups name it in most often, or else the fleet. A single flight does
     not determine effects that look alike together: of these the one that most vehicles have is
-    tracked, or else the one that is named more often.
+    tracked, or else the one that is named more often. Both are where most vehicles have both, and
+    verdicts name them together.
     """
     named = effects.filter(pc.field('named'))
     counts = named.group_by(['vehicle', 'effect', 'form']).aggregate([([], 'count_all')])
@@ -59,19 +63,45 @@ def tracked_effects(effects: pyarrow.Table) -> dict[str, dict[str, str]]:
         if having and len(having) >= MOST * len(by_vehicle):
             common[effect] = {form: sum(one.get(form, 0) for one in having)
                               for forms in having for form in forms}
-    return {vehicle: {effect: _usual(effect, {**common, **found}[effect])
-                      for effect in _apart(common, found)}
+    often = {effect: sum(effect in found for found in by_vehicle.values()) for effect in common}
+    kept = _without_alternatives(common, often, named)
+    return {vehicle: {effect: _usual(effect, {**kept, **found}[effect])
+                      for effect in _apart(kept, found)}
             for vehicle, found in by_vehicle.items()}
 
 
-def _apart(common: Mapping[str, Mapping[str, int]], found: Mapping[str, Mapping[str, int]]
-           ) -> list[str]:
+def _without_alternatives(common: Forms, often: Mapping[str, int], named: pyarrow.Table
+                          ) -> Forms:
+    """
+    Return the common effects, of those that look alike and are seldom named together the first.
+
+    often: how many vehicles have each; named: the rows of the verdicts.
+    """
+    verdicts: dict[str, set[str]] = {}
+    for row in named.select(['group', 'effect']).to_pylist():
+        verdicts.setdefault(row['group'], set()).add(row['effect'])
+
+    def count(*effects: str) -> int:
+        return sum(one.issuperset(effects) for one in verdicts.values())
+
+    kept: list[str] = []
+    for effect in sorted(common, key=lambda name: (-often[name], -count(name))):
+        if all(count(effect, one) >= TOGETHER * min(count(effect), count(one))
+               for one in kept if _alike(effect, one)):
+            kept.append(effect)
+    return {effect: common[effect] for effect in kept}
+
+
+def _alike(effect: str, other: str) -> bool:
+    """Return whether two effects look alike."""
+    return other in EFFECTS[effect].confused_with or effect in EFFECTS[other].confused_with
+
+
+def _apart(common: Forms, found: Forms) -> list[str]:
     """Return the common effects, and of a vehicle's other ones those that look like none kept."""
     kept = list(common)
     for effect in sorted(set(found) - set(common), key=lambda name: -sum(found[name].values())):
-        alike = {one for one in kept if one in EFFECTS[effect].confused_with
-                 or effect in EFFECTS[one].confused_with}
-        if not alike:
+        if not any(_alike(effect, one) for one in kept):
             kept.append(effect)
     return sorted(kept, key=list(EFFECTS).index)
 

@@ -23,9 +23,10 @@ from quad_ident_ros.fleet.track import tracked_effects, Tracking  # noqa: E402, 
 
 
 def tracked(**named):
-    """Return the effects tracked of vehicles, by {vehicle: names, one for each group's}."""
-    rows = [{'vehicle': vehicle, 'effect': name, 'form': 'any', 'named': True}
-            for vehicle, names in named.items() for name in names.split()]
+    """Return the effects tracked, by {vehicle: effects of its verdicts, with + between them}."""
+    rows = [{'group': f'{vehicle} {number}', 'vehicle': vehicle, 'effect': name, 'form': 'any',
+             'named': True} for vehicle, verdicts in named.items()
+            for number, verdict in enumerate(verdicts.split()) for name in verdict.split('+')]
     found = tracked_effects(pyarrow.Table.from_pylist(rows))
     return {vehicle: set(effects) for vehicle, effects in found.items()}
 
@@ -44,6 +45,19 @@ def test_of_two_alike_the_one_that_is_named_more_often_is_tracked():
     """Where no other vehicle has either, the verdicts decide."""
     found = tracked(a='com_offset rotor_fault rotor_fault', b='motor_lag', c='motor_lag')
     assert found['a'] == {'rotor_fault', 'motor_lag'}
+
+
+def test_of_two_alike_that_many_vehicles_have_in_turn_one_is_tracked():
+    """Verdicts take one for the other: fitted together to one flight, neither would be known."""
+    found = tracked(a='thrust_scale', b='mass_offset')
+    assert found == {'a': {'thrust_scale'}, 'b': {'thrust_scale'}}
+    turns = tracked(a='thrust_scale mass_offset mass_offset')
+    assert turns == {'a': {'mass_offset'}}
+
+
+def test_two_alike_that_verdicts_name_together_are_both_tracked():
+    both = 'motor_lag+actuation_delay'
+    assert tracked(a=both, b=both, c=both)['a'] == {'motor_lag', 'actuation_delay'}
 
 
 @pytest.fixture
