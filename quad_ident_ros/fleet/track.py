@@ -23,6 +23,11 @@ from quad_ident_ros.greybox.taken_in import taken_in
 MOST = 0.5      # share of the fleet's vehicles from which on an effect is compared in all of them
 TOGETHER = 0.5  # share of verdicts with one of two effects from which on both are there
 
+# Verdicts let these differ from flight to flight, so that they do not name what drifts a little.
+# Thrust is one; wind is another, but belongs to the day and not to the vehicle.
+BY_FLIGHT = tuple(name for name, effect in EFFECTS.items()
+                  if effect.per_flight and not effect.needs_air)
+
 Forms = Mapping[str, Mapping[str, int]]     # {effect: {form: how often it is named}}
 
 
@@ -44,11 +49,12 @@ def tracked_effects(effects: pyarrow.Table) -> dict[str, dict[str, str]]:
     """
     Return {vehicle: {effect: form}} to track, of the table `effects` of a data set.
 
-    For each vehicle the effects that most vehicles have, and those that any of its groups names;
-    each in the form that its groups name it in most often, or else the fleet. A single flight does
-    not determine effects that look alike together: of these the one that most vehicles have is
-    tracked, or else the one that is named more often. Both are where most vehicles have both, and
-    verdicts name them together.
+    For each vehicle the effects that most vehicles have, those that any of its groups names, and
+    those that verdicts let differ from flight to flight (BY_FLIGHT); each in the form that its
+    groups name it in most often, or else the fleet. A single flight does not determine effects
+    that look alike together: of these the one that most vehicles have is tracked, or else the one
+    that is named more often. Both are where most vehicles have both, and verdicts name them
+    together.
     """
     named = effects.filter(pc.field('named'))
     counts = named.group_by(['vehicle', 'effect', 'form']).aggregate([([], 'count_all')])
@@ -65,9 +71,11 @@ def tracked_effects(effects: pyarrow.Table) -> dict[str, dict[str, str]]:
                               for forms in having for form in forms}
     often = {effect: sum(effect in found for found in by_vehicle.values()) for effect in common}
     kept = _without_alternatives(common, often, named)
+    unnamed: Forms = {effect: {} for effect in BY_FLIGHT}
+    wanted = {vehicle: {**unnamed, **found} for vehicle, found in by_vehicle.items()}
     return {vehicle: {effect: _usual(effect, {**kept, **found}[effect])
                       for effect in _apart(kept, found)}
-            for vehicle, found in by_vehicle.items()}
+            for vehicle, found in wanted.items()}
 
 
 def _without_alternatives(common: Forms, often: Mapping[str, int], named: pyarrow.Table
@@ -100,7 +108,8 @@ def _alike(effect: str, other: str) -> bool:
 def _apart(common: Forms, found: Forms) -> list[str]:
     """Return the common effects, and of a vehicle's other ones those that look like none kept."""
     kept = list(common)
-    for effect in sorted(set(found) - set(common), key=lambda name: -sum(found[name].values())):
+    for effect in sorted((name for name in EFFECTS if name in found and name not in common),
+                         key=lambda name: -sum(found[name].values())):
         if not any(_alike(effect, one) for one in kept):
             kept.append(effect)
     return sorted(kept, key=list(EFFECTS).index)
