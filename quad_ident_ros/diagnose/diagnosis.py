@@ -16,6 +16,7 @@ from quad_ident_ros.diagnose import advice, measure
 from quad_ident_ros.diagnose.bench import Bench
 from quad_ident_ros.diagnose.candidates import candidates
 from quad_ident_ros.diagnose.ceiling import ceiling_of
+from quad_ident_ros.diagnose.form_unknown import effects_of_unknown_form
 from quad_ident_ros.diagnose.in_closed_loop import in_closed_loop
 from quad_ident_ros.diagnose.in_simulator import gap_in_simulator, refuse_inertial
 from quad_ident_ros.diagnose.intake import take_in
@@ -95,13 +96,15 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
                   rules)
     judged = judge(bench)
     told(0.85)
-    verdict = verdict_of(bench, judged, causes, ruled_out)
     z0, model = nominal(vehicle), judged.model
     whole = np.median([whole_noise(raw, 1.0 - 1.0 / raw.shape[1])
                        for raw in model.estimate.residuals], axis=0)
     before = measure.residual_wrenches(bench, [z0 + z - model.z for z in model.vectors],
                                        noise.deviation)
     after = measure.residual_wrenches(bench, model.vectors, whole)
+    unknown = measure.unexplained(judged, measure.channels(after, vehicle, rules))
+    form_unknown = effects_of_unknown_form(bench, judged, unknown, after, whole)
+    verdict = verdict_of(bench, judged, causes, ruled_out, form_unknown)
     ceiling, residual = ceiling_of(bench, judged, after, whole)
     told(0.95)
     closed_loop = None if controller is None or reference is None else in_closed_loop(
@@ -116,7 +119,7 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
         ceiling=ceiling,
         tolerance={name: rules.tolerance(name, gap)
                    for name, gap in pooled(judged.noise).items()},
-        unknown=measure.unexplained(judged, measure.channels(after, vehicle, rules)),
+        unknown=unknown, form_unknown=tuple(form_unknown),
         undetermined=verdict.undetermined, sure=verdict.sure,
         one_finding=advice.one_finding(verdict, intake.flights), not_shown=tuple(dict.fromkeys(
             (*unseen, *advice.cannot_show(intake.flights, verdict)))),

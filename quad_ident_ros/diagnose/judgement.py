@@ -135,15 +135,15 @@ def _weight(model: Model, without: Model, before: dict, noise: dict, distance: f
             rules: Rules) -> Weight:
     """Return the Weight of what a Model has more than another, so far from no effect."""
     shares = lost_shares(model.gap, without.gap, before, noise, rules)
-    explained = {name: _explained(model.gap[name], without.gap[name], noise[name],
-                                  rules.least(name, noise[name])) for name in shares}
+    explained = {name: explained_share(model.gap[name], without.gap[name], noise[name],
+                                        rules.least(name, noise[name])) for name in shares}
     # Where it does most: a small share of one group may be all that is explained in another.
     name = max(shares, key=lambda group: shares[group] * explained[group])
     return Weight(max(shares.values()), stability(model.ends, without.ends, noise, rules),
                   explained[name], without.gap, distance)
 
 
-def _explained(after: float, without: float, noise: float, least: float) -> float:
+def explained_share(after: float, without: float, noise: float, least: float) -> float:
     """Return the share of the gap without an effect that it explains, by gaps of a group."""
     there = beyond(without, noise)
     return float(np.clip((there - beyond(after, noise)) / max(there, least), 0.0, 1.0))

@@ -225,12 +225,14 @@ class Diagnosis:
     The verdict on flights of a vehicle, and what it rests on.
 
     verdict: what matters, the largest contribution first, or none, unknown, undetermined; minor:
-    what is present and does not matter; z (Z,): the parameter vector with the effects named;
-    covariance: how well their parameters are known together, with the constants whose deviations
-    the vehicle file states, or None where there are none; residual: the function of state and
-    command that reaches the ceiling, None where effects do; recorded: the flights as they came;
-    run: the Run of the program, None where a library made the diagnosis; form_errors {effect:
-    (G,)}: log-likelihoods of how exact its formula is, see Joint.
+    what is present and does not matter; unknown: where something remains that matters;
+    form_unknown: the effect, if any, as whose error of form it is explained; z (Z,): the
+    parameter vector with the effects named; covariance: how well their parameters are known
+    together, with the constants whose deviations the vehicle file states, or None where there are
+    none; residual: the function of state and command that reaches the ceiling, None where effects
+    do; recorded: the flights as they came; run: the Run of the program, None where a library made
+    the diagnosis; form_errors {effect: (G,)}: log-likelihoods of how exact its formula is, see
+    Joint.
     """
 
     vehicle: Vehicle
@@ -243,6 +245,7 @@ class Diagnosis:
     ceiling: Ceiling
     tolerance: dict
     unknown: tuple[Unexplained, ...]
+    form_unknown: tuple[str, ...]
     undetermined: tuple[str, ...]
     sure: tuple[str, ...]
     one_finding: tuple[dict, ...]
@@ -290,6 +293,7 @@ class Diagnosis:
             'gap': asdict(self.gap), 'gap_given_attitude': asdict(self.gap_given_attitude),
             'ceiling': asdict(self.ceiling), 'tolerance': dict(self.tolerance),
             'unknown': [asdict(one) for one in self.unknown] or None,
+            'form_unknown': list(self.form_unknown) or None,
             'undetermined': list(self.undetermined) or None,
             'sure': list(self.sure) if self.undetermined else None,
             'one_finding': [dict(one) for one in self.one_finding],

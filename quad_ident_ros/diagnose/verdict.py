@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """From contributions and evidence to the names of a verdict and the ranking of all effects."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 import math
@@ -49,16 +49,22 @@ class Verdict:
     flight_checks: tuple[FlightCheck, ...]
 
 
-def verdict_of(bench: Bench, judged: Judgement, causes: tuple,
-               ruled_out: Sequence[str] = ()) -> Verdict:
-    """Return the Verdict of a Judgement; ruled_out: effects that were no candidates for it."""
+def verdict_of(bench: Bench, judged: Judgement, causes: tuple, ruled_out: Sequence[str],
+               form_unknown: Mapping[str, float]) -> Verdict:
+    """
+    Return the Verdict of a Judgement.
+
+    ruled_out: effects that were no candidates for it; form_unknown: {effect: share explained} of
+    one that what remains belongs to, by a law that is none of its forms.
+    """
     rules, checks = bench.rules, flight_checks(bench, judged)
     named = sorted(judged.material, key=lambda cause: -judged.weights[cause].contribution)
     # A flight that differs vetoes `none`; effects are what the others show, and it is named.
-    unknown = (bool(judged.unexplained or judged.stand_ins)
+    unknown = (bool(judged.stand_ins or judged.unexplained and not form_unknown)
                or not named and any(one.differs for one in checks))
-    doubts = {} if unknown else doubts_of(bench.selection, tuple(named), rules,
-                                          partial(_replaces, bench, judged))
+    # Where no form fits, how well they fit does not decide between effects.
+    doubts = {} if unknown or form_unknown else doubts_of(
+        bench.selection, tuple(named), rules, partial(_replaces, bench, judged))
     total = told_apart(judged.probability, bench.selection.posterior,
                        [cause for cause in named if cause in doubts])
     minor = tuple(Minor(cause.effect, total[cause.effect], judged.weights[cause].contribution)
@@ -69,11 +75,11 @@ def verdict_of(bench: Bench, judged: Judgement, causes: tuple,
     open_first = bool(named) and named[0] in doubts
     names = ((*sure, 'unknown') if unknown else ('undetermined',) if open_first
              else sure or ('none',))
-    return Verdict(names, minor, _ranking(bench, judged, causes, total, ruled_out), certain, sure,
-                   doubts, tuple(sorted({cause.effect for cause in doubts})),
+    ranking = _ranking(bench, judged, causes, total, ruled_out, form_unknown)
+    return Verdict(names, minor, ranking, certain, sure, doubts,
+                   tuple(sorted({cause.effect for cause in doubts})),
                    tuple(cause.effect for cause in certain
-                         if is_brief(bench, judged.model, cause)),
-                   checks)
+                         if is_brief(bench, judged.model, cause)), checks)
 
 
 def _replaces(bench: Bench, judged: Judgement, cause: Candidate, rival: Candidate,
@@ -128,7 +134,7 @@ def flight_checks(bench: Bench, judged: Judgement) -> tuple[FlightCheck, ...]:
 
 
 def _ranking(bench: Bench, judged: Judgement, causes: tuple, total: dict,
-             ruled_out: Sequence[str]) -> tuple[Ranked, ...]:
+             ruled_out: Sequence[str], form_unknown: Mapping[str, float]) -> tuple[Ranked, ...]:
     """Return every effect, the named ones by contribution, then the most probable first."""
     z0, model, best = nominal(bench.vehicle), judged.model, bench.selection.best
     errors, by_file = bench.errors(model), bench.errors_by_file(model)
@@ -158,7 +164,8 @@ def _ranking(bench: Bench, judged: Judgement, causes: tuple, total: dict,
             gap_after = gaps.gap([gaps.ends(track, bench.vehicle, alone + nuisance,
                                             bench.horizon)])
         rows[cause.effect] = Ranked(
-            cause.effect, total[cause.effect], weight and cause.form, weight and weight.explained,
+            cause.effect, total[cause.effect], weight and cause.form,
+            form_unknown.get(cause.effect, weight and weight.explained),
             weight and weight.contribution, weight and weight.stability,
             weight and weight.distance, weight and weight.companions, parameters, gap_after,
             weight and weight.gap)

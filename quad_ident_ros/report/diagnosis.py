@@ -33,6 +33,7 @@ from quad_ident_ros.report.verdict import (
     above_noise,
     closed_of,
     contribution_of,
+    form_of,
     next_step,
     size_line,
     values_of,
@@ -141,13 +142,6 @@ def improbable_lines(found: Diagnosis) -> list[str]:
     if below:
         told.append(f'{below}{" other" if told else ""} effect{"s" * (below != 1)} below {WORTH}')
     return [f'probability of effects not in the table: {", ".join(told)}'] if told else []
-
-
-def form_of(row: Ranked) -> str:
-    """Return the form of an effect and how much of the effect it explains, in words."""
-    if row.form is None:
-        return ''
-    return row.form if row.explained is None else f'{row.form}, {100 * row.explained:.0f} %'
 
 
 def without_it(found: Diagnosis, row: Ranked) -> str:
@@ -316,7 +310,7 @@ def next_row(one: dict) -> list[str]:
 def _which(found: Diagnosis) -> Table:
     rows = []
     for row in shown_effects(found):
-        rows.append([f'{row.effect}\n{EFFECTS[row.effect].title}', form_of(row),
+        rows.append([f'{row.effect}\n{EFFECTS[row.effect].title}', form_of(found, row),
                      f'{row.probability:.2f}', contribution_of(row), values_of(row),
                      without_it(found, row)])
     return table_of(('effect', 'form, explains', 'probability', 'contribution', 'parameters',

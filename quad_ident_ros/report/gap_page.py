@@ -28,7 +28,6 @@ from quad_ident_ros.report.diagnosis import (
     FAR,
     far_line,
     far_rows,
-    form_of,
     IN_SIMULATOR,
     minor_lines,
     NEXT,
@@ -60,6 +59,7 @@ from quad_ident_ros.report.svg import drawings
 from quad_ident_ros.report.verdict import (
     change_of,
     contribution_of,
+    form_of,
     next_step,
     sentence,
     size_line,
@@ -114,8 +114,8 @@ def _map_in_numbers(found: Diagnosis) -> Markup:
 def _which(found: Diagnosis) -> list:
     rows = []
     for row in shown_effects(found):
-        first = [titled(row.effect), form_of(row), f'{row.probability:.2f}', contribution_of(row),
-                 without_it(found, row)]
+        first = [titled(row.effect), form_of(found, row), f'{row.probability:.2f}',
+                 contribution_of(row), without_it(found, row)]
         for name, one in row.parameters.items():
             spread = WIDE * one.std
             rows.append([*first, name, f'{one.value:.4g}{change_of(one)}',

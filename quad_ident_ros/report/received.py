@@ -40,6 +40,7 @@ def diagnosis_from(data: dict, vehicle: Vehicle | None) -> Diagnosis:
         gap_given_attitude=GapGivenAttitude(**data['gap_given_attitude']),
         ceiling=_ceiling_from(data['ceiling']), tolerance=data['tolerance'],
         unknown=tuple(Unexplained(**row) for row in data['unknown'] or ()),
+        form_unknown=tuple(data['form_unknown'] or ()),
         undetermined=tuple(data['undetermined'] or ()), sure=tuple(data['sure'] or ()),
         one_finding=tuple(data['one_finding']), not_shown=tuple(data['not_shown']),
         fly_next=data['fly_next'], nuisances=data['nuisances'], flights=tuple(data['flights']),

@@ -47,10 +47,12 @@ def verdict_line(found: Diagnosis) -> str:
         return (f'uncertain: the best known explanation of {share} is less likely than '
                 f'something else that acts alike: {best}')
     if len(named) == 1:
-        return f'{titled(named[0].effect)}, {values_of(named[0])}, explains {share}{beside}'
+        row, = named
+        return (f'{titled(row.effect)}{_law_of(found, row)}, {values_of(row)}, explains {share}'
+                f'{beside}')
     return f'{len(named)} effects explain {share}: ' + '; '.join(
-        f'{titled(row.effect)}, {values_of(row)}, contribution {contribution_of(row)}'
-        for row in named) + beside
+        f'{titled(row.effect)}{_law_of(found, row)}, {values_of(row)}, contribution '
+        f'{contribution_of(row)}' for row in named) + beside
 
 
 def _others(found: Diagnosis) -> str:
@@ -90,6 +92,9 @@ def next_step(found: Diagnosis, written: str | None = None) -> str:
         return (f'{rest} Only {found.held_out} differs, which was not used for fitting: if it '
                 'moves more than the others, hold out one of them instead (--hold-out FLIGHT).'
                 if alone and len(found.flight_checks) > 2 else rest)
+    if found.form_unknown:
+        return ('Next: the lines "unexplained" say where its law differs from the nearest one; '
+                '"--out-vehicle FILE --residual" adds to the vehicle what the flights show of it.')
     if found.fly_next:
         return ('Next: fly what the table "what to fly next" proposes, and diagnose again with '
                 'the new flights.')
@@ -178,6 +183,22 @@ def _them(found: Diagnosis) -> str:
         return 'the most probable choice'
     words = {0: 'the effects of the model', 1: 'this effect'}
     return words.get(len(_named(found)), 'these effects')
+
+
+def form_of(found: Diagnosis, row: Ranked) -> str:
+    """Return the form of an effect and how much of the effect it explains, in words."""
+    if row.form is None:
+        return ''
+    explained = '' if row.explained is None else f', {100 * row.explained:.0f} %'
+    unknown = 'unknown; nearest: ' if row.effect in found.form_unknown else ''
+    return f'{unknown}{row.form}{explained}'
+
+
+def _law_of(found: Diagnosis, row: Ranked) -> str:
+    """Return what to say of the form of an effect after its name where no form fits."""
+    if row.effect not in found.form_unknown:
+        return ''
+    return f', form unknown: {100 * (row.explained or 0.0):.0f} % of it explained by {row.form}'
 
 
 def _listed(names: Sequence[str]) -> str:

@@ -57,9 +57,9 @@ def diagnosis(**changes):
                           horizons={}, without={'rotor_drag': gap['before']}),
         gap_given_attitude=GapGivenAttitude(0.5, **gap, closed=1.0),
         ceiling=Ceiling(closed, closed, {'force': 0.0, 'moment': 0.0}, ()), tolerance={},
-        unknown=(), undetermined=(), sure=(), one_finding=(), not_shown=(), fly_next=None,
-        nuisances=None, flights=('figure8', 'circle'), held_out='circle', flight_checks=(),
-        findings=(), z=np.empty(0), pictures=None, covariance=None), **changes)
+        unknown=(), form_unknown=(), undetermined=(), sure=(), one_finding=(), not_shown=(),
+        fly_next=None, nuisances=None, flights=('figure8', 'circle'), held_out='circle',
+        flight_checks=(), findings=(), z=np.empty(0), pictures=None, covariance=None), **changes)
 
 
 def published(found, end_ns=12_340_000_000):

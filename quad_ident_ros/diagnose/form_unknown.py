@@ -1,0 +1,112 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Whether what remains is an effect that is named, by a law that is none of its forms."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from quad_ident_ros.diagnose import gap as gaps
+from quad_ident_ros.diagnose.bench import Bench
+from quad_ident_ros.diagnose.candidates import Candidate
+from quad_ident_ros.diagnose.judgement import (
+    explained_share,
+    Judgement,
+    lost_shares,
+    pooled,
+)
+from quad_ident_ros.diagnose.measure import residual_wrenches
+from quad_ident_ros.diagnose.residual_wrench import CHANNELS, ResidualWrench, weights
+from quad_ident_ros.diagnose.result import Unexplained
+from quad_ident_ros.greybox.parameters import nominal
+
+SIZES = np.geomspace(0.02, 5.0, 80)
+"""Of what remains that are tried, over its root mean square: 7 % apart."""
+
+
+def effects_of_unknown_form(bench: Bench, judged: Judgement, unknown: Sequence[Unexplained],
+                            wrenches: Sequence[ResidualWrench], noise: np.ndarray
+                            ) -> Mapping[str, float]:
+    """
+    Return {effect: share of it explained} of one with whose action what remains comes and goes.
+
+    An error of form is a share of what the effect does: large where that is large, and zero where
+    the effect does not act. Another cause knows nothing of it. Each makes a variance of the
+    residual force or moment beside that of the noise: in proportion to the square of what the
+    effect does, or the same throughout. The former has to be likelier by more than `hidden`
+    standard errors over blocks of time (Vuong, Econometrica 57, 1989), for an effect that matters
+    in each group of outputs in which something remains. Of several effects the one that it is
+    most clearly so for; none where it is for none. The share is the smallest of those groups.
+    Args: unknown: the channels in which something remains; wrenches: what the model does not
+    explain of each flight learnt from, and noise (12,): that of their states.
+    """
+    columns = [CHANNELS.index(row.channel) for row in unknown]
+    if not columns or judged.stand_ins:
+        return {}
+    values, errors = (np.concatenate([getattr(one, name)[:, columns] for one in wrenches])
+                      for name in ('values', 'errors'))
+    block = _blocks([one.t for one in wrenches], bench.rules.steady_block)
+    throughout = _likeliest(values, errors, np.ones(len(values)))
+    found = {}
+    for cause in judged.material:
+        if not _matters(bench, judged, cause):
+            continue
+        acts = _action(bench, judged, cause, wrenches, noise)
+        gained = np.bincount(block, _likeliest(values, errors, acts) - throughout)
+        error = np.std(gained) * np.sqrt(len(gained))
+        found[cause] = float(np.sum(gained) / max(error, 1e-300))
+    clear = [cause for cause, value in found.items() if value > bench.rules.hidden]
+    if not clear:
+        return {}
+    best = max(clear, key=lambda cause: found[cause])
+    return {best.effect: _explained(bench, judged, best)}
+
+
+def _matters(bench: Bench, judged: Judgement, cause: Candidate) -> bool:
+    """Return whether an effect does something that matters in each group that remains."""
+    shares = lost_shares(judged.model.gap, judged.without[cause].gap, gaps.gap(judged.before),
+                         pooled(judged.noise), bench.rules)
+    return all(shares[name] >= bench.rules.material for name in judged.unexplained)
+
+
+def _explained(bench: Bench, judged: Judgement, cause: Candidate) -> float:
+    """Return the least share of an effect that its form explains where something remains."""
+    noise, after, without = pooled(judged.noise), judged.model.gap, judged.without[cause].gap
+    return min(explained_share(after[name], without[name], noise[name],
+                               bench.rules.least(name, noise[name]))
+               for name in judged.unexplained)
+
+
+def _action(bench: Bench, judged: Judgement, cause: Candidate,
+            wrenches: Sequence[ResidualWrench], noise: np.ndarray) -> np.ndarray:
+    """Return what an effect does in each window, (B,), m/s of velocity in half a second."""
+    columns, null = list(cause.columns), nominal(bench.vehicle)
+    vectors = [z.copy() for z in judged.model.vectors]
+    for z in vectors:
+        z[columns] = null[columns]
+    without = residual_wrenches(bench, vectors, noise)
+    change = np.concatenate([one.values - other.values
+                             for one, other in zip(without, wrenches, strict=True)])
+    return np.linalg.norm(change * weights(bench.vehicle), axis=1)
+
+
+def _likeliest(values: np.ndarray, errors: np.ndarray, size: np.ndarray) -> np.ndarray:
+    """
+    Return the log-likelihood of each window, (B,), if channels vary by the best multiple of size.
+
+    values, errors (B, C): residual and the standard deviation of its noise; size (B,).
+    """
+    total = np.zeros(len(values))
+    for value, error in zip(values.T, errors.T, strict=True):
+        unit = np.sqrt(np.mean(value ** 2) / max(np.mean(size ** 2), 1e-300))
+        variance = error ** 2 + (SIZES[:, None] * unit * size) ** 2
+        each = -0.5 * (value ** 2 / variance + np.log(variance))
+        total += each[np.argmax(each.sum(axis=1))]
+    return total
+
+
+def _blocks(times: Sequence[np.ndarray], length: float) -> np.ndarray:
+    """Return the number of the block of so many seconds that each window of flights is in."""
+    place = np.concatenate([np.stack([np.full(len(t), k), t // length], axis=1)
+                            for k, t in enumerate(times)])
+    return np.unique(place, axis=0, return_inverse=True)[1].ravel()

@@ -1,0 +1,75 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""What remains beside an effect: its own law, which is none of its forms, or another cause."""
+
+from dataclasses import replace
+import json
+
+import pytest
+from residual_functions import linear
+
+from quad_ident_ros.diagnose.diagnosis import diagnose
+from quad_ident_ros.flight.fly import fly_closed_loop
+from quad_ident_ros.flight.measure import SENSORS
+from quad_ident_ros.model.vehicle import load_vehicle
+from quad_ident_ros.report.received import diagnosis_from
+from quad_ident_ros.report.verdict import form_of, next_step, verdict_line
+
+pytestmark = pytest.mark.slow
+NOMINAL = load_vehicle('hummingbird')
+DRAG = 0.3 * NOMINAL.mass     # kg/s
+EFFECTS = ['rotor_drag', 'mass_offset', 'motor_lag']     # few: the search is no matter here
+COURSES = ('figure8', 'lissajous', 'steps', 'lissajous')     # the last one is held out
+
+
+def both(one, other):
+    """Return the sum of two residual functions of one input each."""
+    return replace(one, inputs=(*one.inputs, *other.inputs))
+
+
+# A force across the velocity of the air: no law of drag has one.
+ACROSS = both(linear('air_y', (DRAG, 0.0, 0.0, 0.0, 0.0, 0.0)),
+              linear('air_x', (0.0, -DRAG, 0.0, 0.0, 0.0, 0.0)))
+# A force to the side that grows with the height, whatever the velocity: no drag.
+HIGH = linear('height', (0.4, 0.0, 0.0, 0.0, 0.0, 0.0))
+
+
+def found_of(residual):
+    """Return the diagnosis of what flew with a drag of the rotors and a further force."""
+    vehicle = replace(NOMINAL, residual=residual)
+    flights = [fly_closed_loop(vehicle, {'rotor_drag': {'coefficient': DRAG}}, course,
+                               duration=15.0, seed=k, noise=SENSORS['mocap_imu'])
+               for k, course in enumerate(COURSES)]
+    return diagnose(flights, NOMINAL, effects=EFFECTS)
+
+
+@pytest.fixture(scope='module')
+def across():
+    return found_of(ACROSS)
+
+
+def test_what_comes_and_goes_with_an_effect_is_its_form(across):
+    assert across.verdict == ('rotor_drag',)
+    assert across.form_unknown == ('rotor_drag',)
+    assert {row.channel for row in across.unknown[:2]} == {'Fx', 'Fy'}
+
+
+def test_what_does_not_is_unknown():
+    found = found_of(HIGH)
+    assert found.verdict == ('rotor_drag', 'unknown')
+    assert found.form_unknown == ()
+
+
+def test_it_is_told_with_the_share_that_the_nearest_form_explains(across):
+    row = across.ranking[0]
+    share = f'{100 * row.explained:.0f} %'
+    assert 0.2 < row.explained < 0.8
+    assert f'form unknown: {share} of it explained by {row.form}' in verdict_line(across)
+    assert form_of(across, row) == f'unknown; nearest: {row.form}, {share}'
+    assert '--residual' in next_step(across)
+
+
+def test_it_travels_as_data(across):
+    data = json.loads(json.dumps(across.as_data()))
+    assert data['form_unknown'] == ['rotor_drag'] and data['verdict'] == ['rotor_drag']
+    assert diagnosis_from(data, NOMINAL).form_unknown == across.form_unknown
