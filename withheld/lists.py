@@ -26,5 +26,5 @@ NOISES = {
     EVALUATION: ('laplace', 'breathing', 'uneven')}
 STRANGERS = {
     DEVELOPMENT: ('periodic_force', 'tether', 'thrust_exponent', 'backlash', 'updraft', 'slosh',
-                  'ceiling', 'neighbours', 'compass', 'branches'),
-    EVALUATION: ('wall', 'whirl', 'stutter', 'leash')}
+                  'ceiling', 'neighbours', 'compass', 'branches', 'leash'),
+    EVALUATION: ('wall', 'whirl', 'stutter', 'recoil')}

@@ -276,6 +276,40 @@ class Leash(Force):
         return self.stiffness * taut * away / max(far, 1e-9)
 
 
+class Recoil(Influence):
+    """
+    The recoil of a nozzle that cleans: now and then a jet for a second, now ahead and now aside.
+
+    As vehicles that wash panels and facades do in practice; a jet pushes by its momentum, and its
+    valve takes a moment. The nozzle is below the centre and points where the body carries it.
+    """
+
+    STAYS = np.array([(0.5, 2.0), (0.4, 1.4)])  # s: without a jet, with one
+    OPENS, COUNT = 0.08, 60                     # s; far more jets than a flight has
+    BELOW = 0.5                                 # radii of a rotor
+
+    def __init__(self, size, weight, radius, rng):
+        """Take how hard it pushes, N, and where, m."""
+        self.push = 0.03 * size * weight
+        self.place = np.array([0.0, 0.0, -self.BELOW * radius])
+
+    def begin(self, rng):
+        """Draw when it is on, and where it points."""
+        self.times = np.cumsum(rng.uniform(*self.STAYS.T, (self.COUNT, 2)).ravel())
+        angles = rng.uniform(0.0, 2.0 * np.pi, self.COUNT)
+        self.onto = np.column_stack([np.cos(angles), np.sin(angles), 0.0 * angles])
+
+    def wrench(self, now):
+        """Return force and moment."""
+        last = int(np.searchsorted(self.times, now.time)) - 1
+        if last < 0:
+            return None
+        since, on = now.time - self.times[last], last % 2 == 0
+        part = np.exp(-since / self.OPENS)
+        force = self.push * (1.0 - part if on else part) * self.onto[last // 2]
+        return force, np.cross(self.place, force)
+
+
 # Each with what of the vehicle its size is measured by.
 KINDS = {'periodic_force': (Periodic, 'weight'), 'tether': (Tether, 'weight'),
          'updraft': (Updraft, 'weight'), 'thrust_exponent': (Exponent, 'hover'),
@@ -283,4 +317,5 @@ KINDS = {'periodic_force': (Periodic, 'weight'), 'tether': (Tether, 'weight'),
          'ceiling': (Ceiling, 'radius'), 'neighbours': (Neighbours, 'hover'),
          'wall': (Wall, 'radius', 'weight'), 'whirl': (Whirl, 'weight'),
          'stutter': (Stutter, 'rotors'), 'compass': (Compass,),
-         'branches': (Branches, 'weight', 'radius'), 'leash': (Leash, 'weight')}
+         'branches': (Branches, 'weight', 'radius'), 'leash': (Leash, 'weight'),
+         'recoil': (Recoil, 'weight', 'radius')}

@@ -206,3 +206,18 @@ def test_a_leash_pulls_beyond_its_length_alone():
     pulls = [leash.force(0.0, leash.end - share * place, None) for share in (1.5, 2.0)]
     assert pulls[1] == pytest.approx(leash.stiffness * place)
     assert pulls[0] == pytest.approx(0.5 * pulls[1])
+
+
+def test_a_jet_pushes_back_where_the_body_carries_it_and_not_always():
+    recoil, pushes = outside.Recoil(1.0, 5.0, 0.1, np.random.default_rng(1)), []
+    recoil.begin(np.random.default_rng(2))
+    for t in np.arange(0.0, 20.0, 0.01):
+        extra = recoil.wrench(SimpleNamespace(time=t))
+        pushes.append(np.zeros((2, 3)) if extra is None else np.array(extra))
+    forces, moments = np.moveaxis(np.array(pushes), 1, 0)
+    sizes = np.linalg.norm(forces, axis=1)
+    assert 0.2 < np.mean(sizes > 0.5 * recoil.push) < 0.6 and not np.any(forces[:, 2])
+    assert sizes.max() == pytest.approx(recoil.push, rel=0.01)
+    # Its valve opens and closes within a moment.
+    assert np.abs(np.diff(sizes)).max() <= 1.01 * recoil.push * 0.01 / recoil.OPENS
+    assert moments == pytest.approx(np.cross(recoil.place, forces))
