@@ -77,12 +77,13 @@ def wanted_of(vehicle: Vehicle, sag: float | None, holds: Collection[Key]) -> Wa
     # About hover the curve with an offset goes with this power.
     exponent = scale.get('exponent', SQUARE / (1.0 + scale.get('offset', 0.0)))
     mismatch = effects.get('inertia_mismatch', {})
-    # Where the rotors' moments differ, the inertia that answers them alike.
-    moments = np.array(vehicle.inertia) * [
+    # Where the rotors' moments differ, the inertia that answers them alike, to which the centre
+    # of mass is nearer: its moment was not in the factors.
+    gains = np.array([mismatch.get(moment, 1.0) * mismatch.get(f'moment_{axis}', 1.0)
+                      for axis, moment in zip('xyz', ('arms_y', 'arms_x', 'torque'), strict=True)])
+    moments = np.array(vehicle.inertia) / gains * [
         mismatch.get(f'factor_{axis}', 1.0) * mismatch.get(f'inertia_{axis}', 1.0)
-        * mismatch.get(2 * axis, 1.0)
-        / (mismatch.get(moment, 1.0) * mismatch.get(f'moment_{axis}', 1.0))
-        for axis, moment in zip('xyz', ('arms_y', 'arms_x', 'torque'), strict=True)]
+        * mismatch.get(2 * axis, 1.0) for axis in 'xyz']
     roots = np.sqrt(moments)
     products = np.array(vehicle.products) + [
         mismatch.get(axes, 0.0) * roots[one] * roots[other]
@@ -96,7 +97,8 @@ def wanted_of(vehicle: Vehicle, sag: float | None, holds: Collection[Key]) -> Wa
     losses, torque_losses = losses_of(effects, len(vehicle.rotors))
     return Wanted(
         mass=vehicle.mass + effects.get('mass_offset', {}).get('mass', 0.0),
-        centre=np.array([shift.get(axis, 0.0) for axis in 'xyz']),
+        centre=np.array([shift.get(axis, 0.0) for axis in 'xyz'])
+        / [gains[1], gains[0], math.sqrt(gains[0] * gains[1])],
         inertia=replace(vehicle, inertia=tuple(moments), products=tuple(products)).inertia_matrix,
         thrust=factor * vehicle.thrust_coefficient, hover=vehicle.hover_speed,
         exponent=exponent, losses=losses, torque=vehicle.torque_coefficient,
