@@ -71,7 +71,7 @@ def tracked_effects(effects: pyarrow.Table) -> dict[str, dict[str, str]]:
                               for forms in having for form in forms}
     often = {effect: sum(effect in found for found in by_vehicle.values()) for effect in common}
     kept = _without_alternatives(common, often, named)
-    unnamed: Forms = {effect: {} for effect in BY_FLIGHT}
+    unnamed: Forms = {effect: kept.get(effect, {}) for effect in BY_FLIGHT}
     wanted = {vehicle: {**unnamed, **found} for vehicle, found in by_vehicle.items()}
     return {vehicle: {effect: _usual(effect, {**kept, **found}[effect])
                       for effect in _apart(kept, found)}

@@ -67,6 +67,15 @@ def test_thrust_which_verdicts_let_differ_by_flight_is_tracked_without_being_nam
     assert found['c'] == {'mass_offset'}
 
 
+def test_thrust_that_a_vehicle_does_not_name_has_the_form_of_the_fleet():
+    rows = [{'group': vehicle, 'vehicle': vehicle, 'effect': effect, 'form': form, 'named': True}
+            for vehicle, effect, form in (('a', 'thrust_scale', 'exponent'),
+                                          ('b', 'thrust_scale', 'exponent'),
+                                          ('c', 'motor_lag', 'first_order'))]
+    found = tracked_effects(pyarrow.Table.from_pylist(rows))
+    assert found['c'] == {'thrust_scale': 'exponent', 'motor_lag': 'first_order'}
+
+
 @pytest.fixture
 def group(tmp_path):
     """Return a group of one flight, which is diagnosed and has drag in its verdict."""
