@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The parameters of effects fitted to each flight by itself, so that a change has a date."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 import hashlib
 from pathlib import Path
@@ -12,12 +12,14 @@ import pyarrow
 import pyarrow.compute as pc
 
 from quad_ident_ros.data.load import load_all
+from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.data.thrust_level import FULL_SPEED
 from quad_ident_ros.effects.base import Parameter
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.fleet.grouping import Group, Member
 from quad_ident_ros.fleet.look import why_missing
 from quad_ident_ros.fleet.store import write_rows
-from quad_ident_ros.greybox.fit import Fit, fit
+from quad_ident_ros.greybox.fit import Fit, fit, OF_LEVEL
 from quad_ident_ros.greybox.taken_in import taken_in
 
 MOST = 0.5      # share of the fleet's vehicles from which on an effect is compared in all of them
@@ -119,8 +121,8 @@ def track(tracking: Tracking, out: str | Path) -> None:
     """
     Fit the effects of a Tracking to each flight of its group and write the rows.
 
-    A flight that cannot be fitted has none. Raises LookupError where one is not there any more,
-    and OSError where nothing can be written.
+    A flight that cannot be fitted has none, and no thrust where that follows from the weight.
+    Raises LookupError where one is not there any more, and OSError where nothing can be written.
     """
     group = tracking.group
     names = [f'{effect}.{parameter.name}' for effect, form in tracking.effects.items()
@@ -133,7 +135,10 @@ def track(tracking: Tracking, out: str | Path) -> None:
         try:
             records = [record for record, _ in taken_in(
                 load_all(member.path, group.mapping, group.nominal), group.nominal)]
-            found = fit(records, group.nominal, names)
+            free = _determined(names, records)
+            if not free:
+                continue
+            found = fit(records, group.nominal, free)
         except Exception:   # of a library, too: it takes no other flight with it
             continue
         parameters += _values(found, member, group)
@@ -141,6 +146,12 @@ def track(tracking: Tracking, out: str | Path) -> None:
                             'matrix': found.estimate.covariance.ravel().tolist()})
     write_rows(out, 'parameters', tracking.key, parameters)
     write_rows(out, 'covariances', tracking.key, covariances)
+
+
+def _determined(names: Sequence[str], records: Iterable[FlightRecord]) -> list[str]:
+    """Return the names but those of what records scaled by the weight do not determine."""
+    levelled = any(FULL_SPEED in record.info for record in records)
+    return [name for name in names if not (levelled and name in OF_LEVEL)]
 
 
 def _parameters(effect: str, form: str, rotors: int) -> Sequence[Parameter]:

@@ -7,8 +7,10 @@ from pathlib import Path
 import pytest
 
 from quad_ident_ros.cluster import Done, TimeOver
+from quad_ident_ros.data.thrust_level import FULL_SPEED
 from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.fleet.manifest import listed
+from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.model.vehicle import load_vehicle
 
 pytest.importorskip('pyarrow', reason="pyarrow is not installed: pip install '.[fleet]'")
@@ -18,7 +20,7 @@ from quad_ident_ros.fleet import run, track  # noqa: E402, I100
 from quad_ident_ros.fleet.grouping import groups_of  # noqa: E402, I100
 from quad_ident_ros.fleet.look import look  # noqa: E402, I100
 from quad_ident_ros.fleet.plan import planned  # noqa: E402, I100
-from quad_ident_ros.fleet.store import keys_of, write_rows  # noqa: E402, I100
+from quad_ident_ros.fleet.store import keys_of, read_rows, write_rows  # noqa: E402, I100
 from quad_ident_ros.fleet.track import tracked_effects, Tracking  # noqa: E402, I100
 
 
@@ -102,6 +104,23 @@ def test_a_library_that_fails_on_a_flight_takes_no_other_with_it(group, tmp_path
     tracking = Tracking(group, {'rotor_drag': 'by_speed'})
     track.track(tracking, tmp_path)
     assert keys_of(tmp_path, 'covariances') == {tracking.key}
+
+
+@pytest.mark.slow
+def test_thrust_of_a_log_that_the_weight_scaled_takes_no_other_effect_with_it(
+        group, tmp_path, monkeypatch):
+    """Most logs have signals without a gain: their thrust over mass is that of the file."""
+    record = fly_closed_loop(group.nominal, {'rotor_drag': {'coefficient': 0.2}},
+                             'figure8', duration=6.0)
+    record.info[FULL_SPEED] = 1500.0
+    monkeypatch.setattr(track, 'load_all', lambda *_: [record])
+    for effects in ({'rotor_drag': 'by_speed', 'thrust_scale': 'factor'},
+                    {'thrust_scale': 'factor'}):
+        tracking = Tracking(group, effects)
+        track.track(tracking, tmp_path)
+        rows = read_rows(tmp_path, 'parameters', tracking.key, ['effect', 'value'])
+        assert [row['effect'] for row in rows] == [*effects][:-1]
+        assert [row['value'] for row in rows] == pytest.approx([0.2] * len(rows), abs=0.02)
 
 
 def test_flights_that_are_not_where_a_worker_looks_are_fitted_by_the_next_run(group, tmp_path):
