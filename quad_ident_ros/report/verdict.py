@@ -42,8 +42,8 @@ def verdict_line(found: Diagnosis) -> str:
                   'is none of its forms')
     beside = doubts and f'; beside {"it" if len(named) == 1 else "them"}, {doubts}'
     if is_uncertain(found):
-        best = '; '.join(f'{titled(row.effect)}, {values_of(row)}, probability '
-                         f'{row.probability:.2g}' for row in named)
+        best = '; '.join(f'{titled(row.effect)}{_law_of(found, row)}, {values_of(row)}, '
+                         f'probability {row.probability:.2g}' for row in named)
         return (f'uncertain: the best known explanation of {share} is less likely than '
                 f'something else that acts alike: {best}')
     if len(named) == 1:
@@ -93,8 +93,10 @@ def next_step(found: Diagnosis, written: str | None = None) -> str:
                 'moves more than the others, hold out one of them instead (--hold-out FLIGHT).'
                 if alone and len(found.flight_checks) > 2 else rest)
     if found.form_unknown:
-        return ('Next: the lines "unexplained" say where its law differs from the nearest one; '
-                '"--out-vehicle FILE --residual" adds to the vehicle what the flights show of it.')
+        where = 'Next: the lines "unexplained" say where its law differs from the nearest one'
+        # Without a function that is shown to help, nothing would be added.
+        return (f'{where}; "--out-vehicle FILE --residual" adds to the vehicle what the flights '
+                'show of it.' if found.ceiling.shown else f'{where}.')
     if found.fly_next:
         return ('Next: fly what the table "what to fly next" proposes, and diagnose again with '
                 'the new flights.')
