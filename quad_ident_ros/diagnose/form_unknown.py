@@ -18,6 +18,7 @@ from quad_ident_ros.diagnose.judgement import (
 from quad_ident_ros.diagnose.measure import residual_wrenches
 from quad_ident_ros.diagnose.residual_wrench import CHANNELS, ResidualWrench, weights
 from quad_ident_ros.diagnose.result import Unexplained
+from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.greybox.parameters import nominal
 
 SIZES = np.geomspace(0.02, 5.0, 80)
@@ -34,9 +35,10 @@ def effects_of_unknown_form(bench: Bench, judged: Judgement, unknown: Sequence[U
     the effect does not act. Another cause knows nothing of it. Each makes a variance of the
     residual force or moment beside that of the noise: in proportion to the square of what the
     effect does, or the same throughout. The former has to be likelier by more than `hidden`
-    standard errors over blocks of time (Vuong, Econometrica 57, 1989), for an effect that matters
-    in each group of outputs in which something remains. Of several effects the one that it is
-    most clearly so for; none where it is for none. The share is the smallest of those groups.
+    standard errors over blocks of time (Vuong, Econometrica 57, 1989), for an effect that comes
+    and goes and matters in each group of outputs in which something remains. Of several effects
+    the one that it is most clearly so for; none where it is for none. The share is the smallest of
+    those groups.
     Args: unknown: the channels in which something remains; wrenches: what the model does not
     explain of each flight learnt from, and noise (12,): that of their states.
     """
@@ -52,6 +54,8 @@ def effects_of_unknown_form(bench: Bench, judged: Judgement, unknown: Sequence[U
         if not _matters(bench, judged, cause):
             continue
         acts = _action(bench, judged, cause, wrenches, noise)
+        if not comes_and_goes(acts, bench.rules):
+            continue
         gained = np.bincount(block, _likeliest(values, errors, acts) - throughout)
         error = np.std(gained) * np.sqrt(len(gained))
         found[cause] = float(np.sum(gained) / max(error, 1e-300))
@@ -88,6 +92,17 @@ def _action(bench: Bench, judged: Judgement, cause: Candidate,
     change = np.concatenate([one.values - other.values
                              for one, other in zip(without, wrenches, strict=True)])
     return np.linalg.norm(change * weights(bench.vehicle), axis=1)
+
+
+def comes_and_goes(acts: np.ndarray, rules: Rules) -> bool:
+    """
+    Return whether an effect does far less at some times than at others, by what it does, (B,).
+
+    Of one that acts nearly alike at all times both variances are nearly the same, and chance says
+    which of them is likelier.
+    """
+    least, most = np.quantile(acts, (0.25, 0.75))
+    return bool(least <= rules.half * most)
 
 
 def _likeliest(values: np.ndarray, errors: np.ndarray, size: np.ndarray) -> np.ndarray:

@@ -84,7 +84,8 @@ class Rules:
     Naming:
       present: probability from which on an effect is named: more likely there than not.
       half: share of the closable gap from which on the effects that matter are named although each
-        of them is less probable than that, if nothing else is: most of it has their cause.
+        of them is less probable than that, if nothing else is: most of it has their cause. An
+        effect comes and goes if the lower quartile of what it does is less than half of the upper.
       doubt: probability of a rival from which on it is not ruled out; an effect of 1 - doubt is
         sure. instead: how many times the odds of a rival must be greater without an effect than
         with it.
