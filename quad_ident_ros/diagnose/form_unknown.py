@@ -56,9 +56,7 @@ def effects_of_unknown_form(bench: Bench, judged: Judgement, unknown: Sequence[U
         acts = _action(bench, judged, cause, wrenches, noise)
         if not comes_and_goes(acts, bench.rules):
             continue
-        gained = np.bincount(block, _likeliest(values, errors, acts) - throughout)
-        error = np.std(gained) * np.sqrt(len(gained))
-        found[cause] = float(np.sum(gained) / max(error, 1e-300))
+        found[cause] = in_errors(_likeliest(values, errors, acts) - throughout, block)
     clear = [cause for cause, value in found.items() if value > bench.rules.hidden]
     if not clear:
         return {}
@@ -92,6 +90,13 @@ def _action(bench: Bench, judged: Judgement, cause: Candidate,
     change = np.concatenate([one.values - other.values
                              for one, other in zip(without, wrenches, strict=True)])
     return np.linalg.norm(change * weights(bench.vehicle), axis=1)
+
+
+def in_errors(gained: np.ndarray, block: np.ndarray) -> float:
+    """Return a sum over windows (B,) in standard errors by blocks (B,); 0 where one is all."""
+    sums = np.bincount(block, gained)
+    error = np.std(sums) * np.sqrt(len(sums))
+    return float(np.sum(sums) / max(error, 1e-300)) if len(sums) > 1 else 0.0
 
 
 def comes_and_goes(acts: np.ndarray, rules: Rules) -> bool:

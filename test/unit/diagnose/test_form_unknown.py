@@ -10,7 +10,7 @@ import pytest
 from residual_functions import linear
 
 from quad_ident_ros.diagnose.diagnosis import diagnose
-from quad_ident_ros.diagnose.form_unknown import comes_and_goes
+from quad_ident_ros.diagnose.form_unknown import comes_and_goes, in_errors
 from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import SENSORS
@@ -70,6 +70,14 @@ def test_what_does_not_is_unknown():
 def test_what_acts_at_all_times_alike_is_not_told_from_another_cause(acts, told):
     """Both variances are the same but for little, so that chance would decide."""
     assert comes_and_goes(acts, RULES) is told
+
+
+def test_one_block_of_time_has_no_standard_error_and_tells_nothing():
+    """Half of a flight of four seconds is held out."""
+    gained = np.ones(40)
+    assert in_errors(gained, np.zeros(40, int)) == 0.0
+    assert in_errors(gained, np.arange(40) // 15) == pytest.approx(40 / np.std([15, 15, 10])
+                                                                   / np.sqrt(3))
 
 
 def test_it_is_told_with_the_share_that_the_nearest_form_explains(across):
