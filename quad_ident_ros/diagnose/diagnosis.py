@@ -102,8 +102,8 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
     before = measure.residual_wrenches(bench, [z0 + z - model.z for z in model.vectors],
                                        noise.deviation)
     after = measure.residual_wrenches(bench, model.vectors, whole)
-    unknown = measure.unexplained(judged, measure.channels(after, vehicle, rules))
-    form_unknown = effects_of_unknown_form(bench, judged, unknown, after, whole)
+    remains = measure.unexplained(judged.open_groups, measure.channels(after, vehicle, rules))
+    form_unknown = effects_of_unknown_form(bench, judged, remains, after, whole)
     verdict = verdict_of(bench, judged, causes, ruled_out, form_unknown)
     ceiling, residual = ceiling_of(bench, judged, after, whole)
     told(0.95)
@@ -119,7 +119,8 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
         ceiling=ceiling,
         tolerance={name: rules.tolerance(name, gap)
                    for name, gap in pooled(judged.noise).items()},
-        unknown=unknown, form_unknown=tuple(form_unknown),
+        unknown=remains if judged.unexplained or form_unknown else (),
+        form_unknown=tuple(form_unknown),
         undetermined=verdict.undetermined, sure=verdict.sure,
         one_finding=advice.one_finding(verdict, intake.flights), not_shown=tuple(dict.fromkeys(
             (*unseen, *advice.cannot_show(intake.flights, verdict)))),

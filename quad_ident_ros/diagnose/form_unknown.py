@@ -25,7 +25,7 @@ SIZES = np.geomspace(0.02, 5.0, 80)
 """Of what remains that are tried, over its root mean square: 7 % apart."""
 
 
-def effects_of_unknown_form(bench: Bench, judged: Judgement, unknown: Sequence[Unexplained],
+def effects_of_unknown_form(bench: Bench, judged: Judgement, remains: Sequence[Unexplained],
                             wrenches: Sequence[ResidualWrench], noise: np.ndarray
                             ) -> Mapping[str, float]:
     """
@@ -36,13 +36,13 @@ def effects_of_unknown_form(bench: Bench, judged: Judgement, unknown: Sequence[U
     residual force or moment beside that of the noise: in proportion to the square of what the
     effect does, or the same throughout. The former has to be likelier by more than `hidden`
     standard errors over blocks of time (Vuong, Econometrica 57, 1989), for an effect that comes
-    and goes and matters in each group of outputs in which something remains. Of several effects
-    the one that it is most clearly so for; none where it is for none. The share is the smallest of
-    those groups.
-    Args: unknown: the channels in which something remains; wrenches: what the model does not
+    and goes, matters in each group of outputs in which something remains, and is explained there
+    less well than formulas usually do (`form_error`). Of several effects the one that it is most
+    clearly so for; none where it is for none. The share is the smallest of those groups.
+    Args: remains: the channels in which something does; wrenches: what the model does not
     explain of each flight learnt from, and noise (12,): that of their states.
     """
-    columns = [CHANNELS.index(row.channel) for row in unknown]
+    columns = [CHANNELS.index(row.channel) for row in remains]
     if not columns or judged.stand_ins:
         return {}
     values, errors = (np.concatenate([getattr(one, name)[:, columns] for one in wrenches])
@@ -51,7 +51,8 @@ def effects_of_unknown_form(bench: Bench, judged: Judgement, unknown: Sequence[U
     throughout = _likeliest(values, errors, np.ones(len(values)))
     found = {}
     for cause in judged.material:
-        if not _matters(bench, judged, cause):
+        if not (_matters(bench, judged, cause)
+                and _explained(bench, judged, cause) < 1.0 - bench.rules.form_error):
             continue
         acts = _action(bench, judged, cause, wrenches, noise)
         if not comes_and_goes(acts, bench.rules):
@@ -68,7 +69,7 @@ def _matters(bench: Bench, judged: Judgement, cause: Candidate) -> bool:
     """Return whether an effect does something that matters in each group that remains."""
     shares = lost_shares(judged.model.gap, judged.without[cause].gap, gaps.gap(judged.before),
                          pooled(judged.noise), bench.rules)
-    return all(shares[name] >= bench.rules.material for name in judged.unexplained)
+    return all(shares[name] >= bench.rules.material for name in judged.open_groups)
 
 
 def _explained(bench: Bench, judged: Judgement, cause: Candidate) -> float:
@@ -76,7 +77,7 @@ def _explained(bench: Bench, judged: Judgement, cause: Candidate) -> float:
     noise, after, without = pooled(judged.noise), judged.model.gap, judged.without[cause].gap
     return min(explained_share(after[name], without[name], noise[name],
                                bench.rules.least(name, noise[name]))
-               for name in judged.unexplained)
+               for name in judged.open_groups)
 
 
 def _action(bench: Bench, judged: Judgement, cause: Candidate,

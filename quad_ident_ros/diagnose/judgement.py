@@ -31,7 +31,8 @@ class Judgement:
     before: the Ends of the nominal vehicle with the nuisances of each flight; left_out: those of
     each flight by the model fitted to the others; noises: the Noise of each flight, noise: its
     {group: gap};
-    unexplained: {group: gap beyond tolerance and error of form}.
+    remaining: {group: gap beyond tolerance}; unexplained: those of them beyond the error of form
+    that the effects named may have.
     """
 
     model: Model
@@ -45,7 +46,13 @@ class Judgement:
     left_out: tuple
     noises: tuple[Noise, ...]
     noise: list
+    remaining: dict
     unexplained: dict
+
+    @property
+    def open_groups(self) -> tuple[str, ...]:
+        """Return the groups in which something is unexplained, or else remains, if any."""
+        return tuple(self.unexplained or self.remaining)
 
 
 def judge(bench: Bench) -> Judgement:
@@ -111,6 +118,7 @@ def judge(bench: Bench) -> Judgement:
                      present,
                      dict(zip(in_forms_of(final.effects, without), without.values(), strict=True)),
                      ends, bench.left_out(final), noises, noise_gaps,
+                     remaining(final.gap, noise, rules),
                      unexplained(final.gap, gaps.gap(ends), noise, bool(material), rules))
 
 
@@ -251,6 +259,13 @@ def clear(weights: list[Weight], distance: float, rules: Rules) -> bool:
                                            for weight in weights)
 
 
+def remaining(gap: dict, noise: dict, rules: Rules) -> dict:
+    """Return {group: gap} of what remains beyond the noise, where it is over the tolerance."""
+    found = {name: beyond(gap[name], noise[name]) for name in gap}
+    return {name: remains for name, remains in found.items()
+            if remains > rules.tolerance(name, noise[name])}
+
+
 def unexplained(gap: dict, before: dict, noise: dict, named: bool, rules: Rules) -> dict:
     """
     Return {group: gap} of what remains beyond the noise, where that matters.
@@ -258,13 +273,8 @@ def unexplained(gap: dict, before: dict, noise: dict, named: bool, rules: Rules)
     It matters where it is more than the tolerance, and more than the error of form of the effects
     that are named, if any, may be.
     """
-    found = {}
-    for name in gap:
-        remains = beyond(gap[name], noise[name])
-        closed = beyond(before[name], gap[name]) if named else 0.0
-        if remains > max(rules.tolerance(name, noise[name]), rules.unexplained * closed):
-            found[name] = remains
-    return found
+    return {name: remains for name, remains in remaining(gap, noise, rules).items()
+            if not named or remains > rules.unexplained * beyond(before[name], gap[name])}
 
 
 def beyond(gap: float, noise: float) -> float:

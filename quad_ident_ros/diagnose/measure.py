@@ -88,11 +88,11 @@ def channels(found: tuple[ResidualWrench, ...], vehicle: Vehicle, rules: Rules
     return tuple(sorted(rows, key=lambda row: -row.share))
 
 
-def unexplained(judged: Judgement, after: tuple[Channel, ...]) -> tuple[Unexplained, ...]:
-    """Return the channels in which something unknown remains, the largest share first."""
-    if not judged.unexplained:
+def unexplained(groups: Sequence[str], after: tuple[Channel, ...]) -> tuple[Unexplained, ...]:
+    """Return the channels of what remains in groups of outputs, the largest share first."""
+    if not groups:
         return ()
-    moments = not set(judged.unexplained) & set(TRANSLATION)
+    moments = not set(groups) & set(TRANSLATION)
     rows = [row for row in after if row.channel[0] == ('M' if moments else 'F')]
     rows = [row for row in rows if row.rms > row.noise_rms] or rows
     return tuple(Unexplained(row.channel, row.regime, row.share_in_regime, row.band,

@@ -62,8 +62,8 @@ def verdict_of(bench: Bench, judged: Judgement, causes: tuple, ruled_out: Sequen
     # A flight that differs vetoes `none`; effects are what the others show, and it is named.
     unknown = (bool(judged.stand_ins or judged.unexplained and not form_unknown)
                or not named and any(one.differs for one in checks))
-    # Where no form fits, how well they fit does not decide between effects.
-    doubts = {} if unknown or form_unknown else doubts_of(
+    # Where much is unexplained, how well forms fit does not decide between effects.
+    doubts = {} if unknown or judged.unexplained else doubts_of(
         bench.selection, tuple(named), rules, partial(_replaces, bench, judged))
     total = told_apart(judged.probability, bench.selection.posterior,
                        [cause for cause in named if cause in doubts])

@@ -7,7 +7,7 @@ import json
 
 import numpy as np
 import pytest
-from residual_functions import linear
+from residual_functions import linear, times
 
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.diagnose.form_unknown import comes_and_goes, in_errors
@@ -56,6 +56,21 @@ def test_what_comes_and_goes_with_an_effect_is_its_form(across):
     assert across.verdict == ('rotor_drag',)
     assert across.form_unknown == ('rotor_drag',)
     assert {row.channel for row in across.unknown[:2]} == {'Fx', 'Fy'}
+
+
+def test_a_form_that_fits_badly_is_told_where_nothing_would_be_unknown():
+    """It explains more than half of the effect, and less than formulas usually do."""
+    found = found_of(times(0.5, ACROSS))
+    row = found.ranking[0]
+    assert found.verdict == found.form_unknown == ('rotor_drag',)
+    assert 0.5 < row.explained < 0.8
+    assert {one.channel for one in found.unknown[:2]} == {'Fx', 'Fy'}
+
+
+def test_a_form_that_fits_as_well_as_formulas_do_is_not_said_to_be_unknown():
+    found = found_of(times(0.1, ACROSS))
+    assert found.verdict == ('rotor_drag',)
+    assert found.form_unknown == found.unknown == ()
 
 
 def test_what_does_not_is_unknown():
