@@ -13,7 +13,10 @@ from quad_ident_ros.errors import InputError
 
 DEFAULT_OUT = 'fleet'
 FAULTY = 3
-"""Exit code where groups failed, which the next run tries again, or gave way to another run."""
+"""
+Exit code where groups failed, which the next run tries again, or gave way to another run; and
+where all groups were refused, in this run or before, so that there is no diagnosis at all.
+"""
 _BYTES = re.compile(r'(\d+(?:\.\d+)?) ?([kMGT]?)(i?)B?')
 
 
@@ -68,7 +71,7 @@ def add(commands, summary):
 
 
 def run(options):
-    """Diagnose the flights and say what came of it; 3 where a group failed."""
+    """Diagnose the flights and say what came of it; 3 where a group failed or all are refused."""
     try:
         from quad_ident_ros.fleet.insight import insight
         from quad_ident_ros.fleet.plan import planned
@@ -109,7 +112,8 @@ def run(options):
         write_priors(options.out_priors, learned(effects, found.histories),
                      len(effects['vehicle'].unique()))
     groups = summary.groups
-    faulty = groups['failed'] or groups['timeout'] or summary.untracked or summary.gave_way
+    faulty = (groups['failed'] or groups['timeout'] or summary.untracked or summary.gave_way
+              or summary.fruitless)
     return FAULTY if faulty else 0
 
 

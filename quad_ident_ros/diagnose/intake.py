@@ -17,6 +17,7 @@ from quad_ident_ros.data.quality.finding import as_caution, Finding
 from quad_ident_ros.data.quality.fleet import days, vehicles
 from quad_ident_ros.data.quality.ground import airborne, stands
 from quad_ident_ros.data.quality.gyro import bias
+from quad_ident_ros.data.quality.time_scale import of_time
 from quad_ident_ros.data.record import FlightRecord, refuse_twice, same_flight
 from quad_ident_ros.data.split import joined, spans
 from quad_ident_ros.data.thrust_level import on_one_level
@@ -277,6 +278,7 @@ def length_of(record: FlightRecord) -> float:
 def refuse_short(record: FlightRecord, rules: Rules, where: str = '') -> None:
     """Raise InputError where a flight record, where it was cut to, is too short."""
     if length_of(record) < rules.shortest:
+        refuse_errors(record, of_time(record, None))    # in minutes it would be short, too
         name = record.info.get('source') or record.info.get('name', 'a record')
         raise InputError(f'{name}: {length_of(record):.3g} s{where} are '
                          f'too short for a diagnosis; at least {rules.shortest:g} s are needed')

@@ -105,6 +105,17 @@ class Summary:
     undated: tuple[str, ...] = ()
     together: tuple[str, ...] = ()
 
+    @property
+    def fruitless(self) -> bool:
+        """
+        Return whether the flights have no diagnosis, old or new, because all were refused.
+
+        Results that stay without their flights, or in groups of another run, are not counted in
+        groups and may be diagnoses.
+        """
+        return bool(self.groups[REFUSED] and not self.groups[DIAGNOSED]
+                    and not self.kept and not self.replaced)
+
 
 Tell = Callable[[Progress], None]
 

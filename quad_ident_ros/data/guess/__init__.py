@@ -11,7 +11,7 @@ import warnings
 
 import numpy as np
 
-from quad_ident_ros.data.guess import attitude, clock, motion, motors, programs
+from quad_ident_ros.data.guess import attitude, clock, motion, motors, programs, time_check
 from quad_ident_ros.data.guess.draft import Draft, Guess
 from quad_ident_ros.data.mapping import Mapping
 from quad_ident_ros.data.tabular import shown, Table
@@ -33,11 +33,7 @@ def guess(table: Table, given: Mapping | None = None) -> Guess:
     # Values that are not numbers of a flight are ignored.
     finite = {name: np.where(np.abs(values) < BEYOND, values, np.nan)
               for name, values in table.columns.items()}
-    made = Draft(replace(table, columns=finite), given)
-    with warnings.catch_warnings(), np.errstate(all='ignore'):
-        warnings.simplefilter('ignore', RuntimeWarning)     # of rows without any value
-        for step in STEPS:
-            step(made)
+    made = _made(replace(table, columns=finite), given)
     made.guess.mapping = Mapping({}, made.world, made.body, {}, given.actuators, made.columns,
                                  made.order, given.separator)
     if made.free:
@@ -46,3 +42,21 @@ def guess(table: Table, given: Mapping | None = None) -> Guess:
         made.guess.doubts.append('no column is a position, velocity, attitude, rate or specific '
                                  'force by its name')
     return made.guess
+
+
+def _made(table: Table, given: Mapping) -> Draft:
+    """Return the finished Draft; a blind one, where its columns contradict the time."""
+    with warnings.catch_warnings(), np.errstate(all='ignore'):
+        warnings.simplefilter('ignore', RuntimeWarning)     # of rows without any value
+        made = Draft(table, given)
+        for step in STEPS:
+            step(made)
+        # What another unit in the name of the time would make of the others is doubted as well.
+        doubt = time_check.doubt_of(made) if made.unsure or made.guess.doubts else None
+        if doubt is None:
+            return made
+        made = Draft(table, given, blind=True)
+        for step in STEPS:
+            step(made)
+    doubt.enter(made)
+    return made

@@ -3,6 +3,7 @@
 """The time of a table, and its unit."""
 
 from collections.abc import Sequence
+import re
 
 import numpy as np
 
@@ -15,6 +16,9 @@ CLOCK = 1e9, 4.1e9      # s since 1970: 2001 to 2100
 USUAL = 10.0, 4000.0    # Hz, of nearly all logs: under three decades, by which the units differ
 MOSTLY = 0.9            # share of the steps: a time may repeat or fall where recordings join
 EVEN = 0.5              # of the usual step that nearly all steps differ by at most, jitter and all
+COUNT = re.compile(r'(frame|sample|row|step|tick)s?(_?(no|nr|num|number|id|idx|index|count))?|'
+                   r'index|idx|count|counter|seq|time_?step|time_?index')
+"""Names of columns that count what is recorded."""
 
 
 def time(draft: Draft) -> None:
@@ -30,44 +34,58 @@ def time(draft: Draft) -> None:
         draft.guess.doubts.append(
             f't: no column of a time that rises{_but(found)}; add one in s to the file')
         return
+    rising = [name for name in rising if not _is_count(draft.table.columns[name])] or rising
     name = min(rising, key=lambda name: len(draft.names[name]))
     values, unit = draft.table.columns[name], ''
     if ':' not in draft.units[name]:     # else how a time of day is written, as hh:mm:ss
         unit = draft.said_unit('t', [name], UNITS['s'])
+    draft.unsure = not unit
     unit = unit or time_unit(values)
+    draft.counted = draft.unsure and unit == 'ms' and _is_count(values) and abs(
+        float(values[np.isfinite(values)][0])) < CLOCK[0]
+    if draft.counted and draft.table.rate:
+        unit, draft.unsure = f'{draft.table.rate:.10g} Hz', False
     if not unit:
         draft.guess.doubts.append(f't: the unit of {name!r}')
         unit = 's'
     draft.columns['t'] = Column((name,), unit)
-    draft.t = values * factor_of('t', unit)
+    draft.stamps = values * factor_of('t', unit)
+    draft.t = None if draft.blind else draft.stamps
     draft.taken([name], '')
     draft.guess.said.append(f'{name}: time in {unit}')
 
 
 def _by_count(draft: Draft) -> bool:
     """Take a count of frames as the time, or doubt its rate; return whether there is one."""
-    counts = [name for name in draft.free if draft.names[name] in ('frame', 'frames')
+    counts = [name for name in draft.free if COUNT.fullmatch(draft.names[name])
               and _is_count(draft.table.columns[name])]
-    if len(counts) != 1:
+    if not counts:
         return False
-    rate = draft.table.rate
+    name, rate = counts[0], draft.table.rate
+    draft.taken([name], '')
     if not rate:
-        draft.guess.doubts.append(
-            f't: {counts[0]!r} counts at a rate that the table does not say; write it, such as '
-            f't: {{column: {counts[0]}, unit: 100 Hz}}')
+        draft.columns['t'] = Column((name,), 'ms')      # unless the other columns say more
+        draft.stamps, draft.unsure, draft.counted = 1e-3 * draft.table.columns[name], True, True
+        draft.t = None if draft.blind else draft.stamps
+        draft.guess.said.append(f'{name}: time, counts at 1000 Hz')
         return True
-    draft.columns['t'] = Column((counts[0],), f'{rate:.10g} Hz')
-    draft.t = draft.table.columns[counts[0]] / rate
-    draft.taken(counts, '')
-    draft.guess.said.append(f'{counts[0]}: time, frames at {rate:g} Hz')
+    draft.columns['t'] = Column((name,), f'{rate:.10g} Hz')
+    draft.t = draft.table.columns[name] / rate
+    draft.guess.said.append(f'{name}: time, frames at {rate:g} Hz')
     return True
 
 
 def _is_count(values: np.ndarray) -> bool:
-    """Return whether values rise by one from each row to the next, but for rows left out."""
-    steps = np.diff(values)
-    return bool(len(steps) and (steps >= 1).all() and (steps % 1 == 0).all()
-                and np.median(steps) == 1)
+    """
+    Return whether whole values rise by one from each row to the next as a rule.
+
+    Rows may be left out, be of several streams, or begin another recording.
+    """
+    finite = values[np.isfinite(values)]
+    steps = np.diff(finite)
+    rising = steps[steps > 0]
+    return bool(len(rising) > MOSTLY * len(steps) / 2 and (finite % 1 == 0).all()
+                and np.median(rising) == 1)
 
 
 def time_unit(values: np.ndarray) -> str:
@@ -85,7 +103,7 @@ def time_unit(values: np.ndarray) -> str:
             if USUAL[0] <= factor / step <= USUAL[1]]
     if len(fits) > 1:       # steps of 0.25 to 0.4 of one, 250 to 400 of the other
         fits = [unit for unit in fits if unit != 's']
-    return fits[0] if fits else ('s' if RATES[0] <= 1 / step else '')
+    return fits[0] if fits else ('s' if RATES[0] <= 1 / step <= RATES[1] else '')
 
 
 def _rises(values: np.ndarray) -> bool:
@@ -97,7 +115,7 @@ def _rises(values: np.ndarray) -> bool:
 def _is_clock(values: np.ndarray) -> bool:
     """Return whether values rise in steps of one size as a time does, and are no counts."""
     steps = np.diff(values[np.isfinite(values)])
-    if len(steps) < 10 or (steps <= 0).any() or (steps == 1).all():
+    if len(steps) < 10 or (steps <= 0).any() or _is_count(values):
         return False
     usual = float(np.median(steps))
     return bool(np.mean(np.abs(steps - usual) < EVEN * usual) > MOSTLY) and bool(time_unit(values))

@@ -42,8 +42,9 @@ class Guess:
 class Draft:
     """A guess that is being made: what each step takes is open to the next."""
 
-    def __init__(self, table: Table, given: Mapping) -> None:
-        self.table, self.given = table, given
+    def __init__(self, table: Table, given: Mapping, blind: bool = False) -> None:
+        """Begin; blind: the time is not used, so that what the others say of it is their own."""
+        self.table, self.given, self.blind = table, given, blind
         self.guess = Guess()
         self.columns: dict[str, Column] = {}
         self.world, self.body, self.order = given.world, given.body, given.quaternion
@@ -58,6 +59,9 @@ class Draft:
                      and np.isfinite(table.columns[name]).sum() >= 2
                      and not is_marker(name, table.bodies)]
         self.t: np.ndarray | None = None            # (N,) s
+        self.stamps: np.ndarray | None = None       # (N,) s, also where it is blind
+        # Whether nothing says the unit of the time, and whether it may count the rows.
+        self.unsure = self.counted = False
         self.attitude: np.ndarray | None = None     # (N, 4), scalar first
         # Columns of a group, or None, by the group.
         self.found: dict[tuple[str, ...], list[str] | None] = {}

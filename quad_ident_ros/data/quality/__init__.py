@@ -26,6 +26,7 @@ from quad_ident_ros.data.quality import (
     saturation,
     stale,
     thrust,
+    time_scale,
     timing,
     units,
 )
@@ -73,7 +74,9 @@ def findings(record: FlightRecord, vehicle: Vehicle | None = None) -> tuple[Find
     with np.errstate(all='ignore'):   # values too large to judge
         found = [finding for check in COLUMNS for finding in check(record, vehicle)]
         believable = columns.believable(record)
-        found += [finding for check in COMPARISONS for finding in check(believable, vehicle)]
+        # Nearly all of the others would see a time that is not in s as faults of their own.
+        found += time_scale.of_time(believable, vehicle) or [
+            finding for check in COMPARISONS for finding in check(believable, vehicle)]
     return gravest_first(found)
 
 

@@ -20,6 +20,8 @@ STRANGE = 0.5             # correlation under which position and velocity do not
 SLOW = 0.3                # m/s rms under which noise may hide that they do
 HEADING = np.radians([5, 35])   # off for a warning and an error: on a circle, clocks that are
                                 # 40 ms apart turn the force by as much
+LEVEL = 0.05                # m/s^2 rms, a lean of 0.3 deg: less is rounding or noise
+LIKE_SIZE = 1.35            # within this factor two forces are one, drag and lags apart
 CLEAR = 0.9                 # correlation from which on it shows to a degree how far it is off
 DRAGGED = np.radians([45, 100])     # where no force is measured: drag on a circle looks alike
 LEANS, UPRIGHT = 0.9, 0.5   # correlation of the lean with the force where up is right, and wrong
@@ -129,6 +131,56 @@ def rate_in_world(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding
                     'inverse of the attitude')]
 
 
+@once
+def _force_is_of_world(record: FlightRecord) -> bool:
+    """
+    Return whether the specific force of a record is along the axes of the world.
+
+    As it is, it then is how the velocity changes, less gravity, and turned by the attitude it is
+    not. Without velocity and position, the thrust tells, which is along z of the body: turned
+    back by the attitude the force is, too. Drag cannot look so, for it pushes a body that leans
+    to the other side. A vehicle that hardly leans and turns shows less of it than of noise.
+    """
+    grid = Grid.of(record)
+    if grid is None or not record.has('ax', 'ay', 'az'):
+        return False
+    name, attitude = best_reading(record)
+    if attitude is None or name != 'as it is':
+        return False
+    force, together = grid.signal('ax', 'ay', 'az'), WIDTH / grid.period
+    if record.has('vx', 'vy', 'vz'):
+        speeding = grid.derivative(grid.signal('vx', 'vy', 'vz'))
+    elif record.has('px', 'py', 'pz'):
+        speeding = grid.derivative(grid.derivative(grid.signal('px', 'py', 'pz')))
+    else:
+        along, back = (_about_mean(grid.smooth(values)[grid.good, :2])
+                       for values in (force, rotate(conjugate(attitude), force)))
+        return (bool(np.sqrt(np.mean((back - along) ** 2)) > LEVEL)
+                and is_rather(np.zeros_like(along), along, back, together))
+    needed = speeding[grid.good] + np.array([0.0, 0.0, GRAVITY])
+    given, turned = (grid.smooth(values)[grid.good]
+                     for values in (force, rotate(attitude, force)))
+    # An attitude of another heading misses it as well: then the force is not that either.
+    sure, slope = correlation(_about_mean(needed[:, :2]), _about_mean(given[:, :2]))
+    return (sure > SURE and abs(np.log(slope)) < np.log(LIKE_SIZE)
+            and is_rather(needed, turned, given, together))
+
+
+def _about_mean(values: np.ndarray) -> np.ndarray:
+    return values - values.mean(axis=0)
+
+
+def force_in_world(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
+    """Find specific forces along the axes of the world: they need no turn by the attitude."""
+    if not _force_is_of_world(record):
+        return []
+    return [Finding('force_in_world', 'error', 'ax, ay, az',
+                    'the specific force is what the vehicle does only if it is not rotated by the '
+                    'attitude: it is along the axes of the world, not of the body',
+                    'give what the accelerometer measures, along the axes of the body, or rotate '
+                    'ax, ay and az by the inverse of the attitude')]
+
+
 def _opposed(one: np.ndarray, other: np.ndarray) -> list[str]:
     """Return the axes, of x, y and z, along which signals (N, k) have opposite signs."""
     return [axis for k, axis in zip(range(one.shape[1]), 'xyz', strict=False)
@@ -150,6 +202,8 @@ def world(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     body_up = np.median(force[:, 2]) / size if size > 0 else 1.0
     world_up = np.median(rotate(attitude, force)[:, 2]) / size if size > 0 else 1.0
     frd, ned = bool(body_up < -0.5), bool(world_up < -0.5)
+    if not frd and not ned and _force_is_of_world(record):
+        return []       # what the force says of velocity and heading is then wrong
     if frd or ned:
         what = ' and '.join(['the body axes are FRD'] * frd + ['the world axes are NED'] * ned)
         return [Finding('frame_ned' if ned else 'frame_frd', 'error',
@@ -321,4 +375,5 @@ def _strangers(moved: np.ndarray, velocity: np.ndarray) -> list[Finding]:
                     'say frame: world or body of the velocity in a mapping, or leave it out')]
 
 
-CHECKS = (y_up, quaternion, world, velocity_in_body, rate_in_world, signs)
+CHECKS = (y_up, quaternion, world, velocity_in_body, rate_in_world,
+          force_in_world, signs)

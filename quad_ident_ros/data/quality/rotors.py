@@ -27,6 +27,8 @@ LATEST = 0.08             # s, motors follow their commands within; clocks are a
 ROUNDING = 1e-12          # of a power: less counts as 0
 COMPACT, WIDE = 0.01, 3.0   # moments of inertia over mass arm^2, beyond which no vehicle is built:
                             # those of known quadrotors lie between 0.16 and 0.32
+SPARSE, SOLID = 0.01, 2e4   # kg/m^3, mass over arm^3: human-powered helicopters (AeroVelo's Atlas,
+                            # 128 kg with its pilot, arms of 13 m) have 0.06, tungsten 19,300
 MOST_ROTORS = 6           # of which all orders are tried
 
 
@@ -59,12 +61,21 @@ def hover(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
 
 
 def size(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
-    """Find vehicle files whose moments of inertia do not go with mass and arms."""
+    """Find vehicle files whose mass, arms and moments of inertia do not go with each other."""
     if vehicle is None or not vehicle.arm_length > 0.0:
         return []
     shares = np.array(vehicle.inertia[:2]) / (vehicle.mass * vehicle.arm_length ** 2)
     if COMPACT < shares.min() and shares.max() < WIDE:
-        return []
+        # All in units of one kind, as kg, cm and kg cm^2: no size is impossible, but its weight.
+        dense = vehicle.mass / vehicle.arm_length ** 3
+        if SPARSE < dense < SOLID:
+            return []
+        return [Finding(
+            'vehicle_size', 'error', 'vehicle file',
+            f'{vehicle.mass:.3g} kg with arms of {vehicle.arm_length:.3g} m are '
+            + (f'{dense:.2g} kg/m^3, less than any vehicle that flies' if dense <= SPARSE else
+               f'{dense:.2g} kg/m^3, more than solid metal') + '; usual are 50 to 500',
+            'give the mass in kg, the positions of the rotors in m and the inertia in kg m^2')]
     return [Finding(
         'vehicle_size', 'error', 'vehicle file',
         f'the moments of inertia about x and y are {shares[0]:.2g} and {shares[1]:.2g} times mass '

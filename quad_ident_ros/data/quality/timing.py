@@ -32,7 +32,8 @@ def slow(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
         f'a sample every {period:.4g} s is too slow to see a vehicle fly; at least every '
         f'{SLOWEST:g} s is needed',
         't is in seconds: divide it by 1000 where it is in ms, by 1e6 where it is in us, by 1e9 '
-        'where it is in ns; if it is right, record faster')]
+        'where it is in ns, or by the rate where it counts samples; if it is right, record '
+        'faster')]
 
 
 def bursts(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:

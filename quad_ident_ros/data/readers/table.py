@@ -132,7 +132,7 @@ def is_record(path: Path) -> bool:
         return False
     found = guess(table)
     theirs = {_group(name) for name in found.mapping.columns} - {''}
-    if theirs <= ours or found.doubts and not (theirs - ours) & {'pose', 'attitude'}:
+    if theirs <= ours or ours and found.doubts and not (theirs - ours) & {'pose', 'attitude'}:
         return True
     return not ours and not set(found.roles) & STATES
 

@@ -9,7 +9,7 @@ import json
 from flightmaker import changed, flight, VEHICLE
 import numpy as np
 import pytest
-from quality_records import CMD, named
+from quality_records import CMD, codes, named
 from real import needs_real_flights, real_flight, real_vehicle
 from scipy.spatial.transform import Rotation
 
@@ -102,6 +102,34 @@ def test_arms_or_inertia_in_another_unit_are_found(arms, inertia):
                if one.code == 'vehicle_size']
     assert 'mass in kg' in found.remedy
     assert not [one for one in findings(flight(), VEHICLE) if one.code == 'vehicle_size']
+
+
+def of_size(mass, arms):
+    """Return VEHICLE with a mass (kg) and arms (m) of any size, and inertia alike."""
+    grown = arms / VEHICLE.arm_length
+    return replace(
+        VEHICLE, mass=mass, inertia=tuple(one * mass / VEHICLE.mass * grown ** 2
+                                          for one in VEHICLE.inertia),
+        rotors=tuple(replace(rotor, position=tuple(grown * one for one in rotor.position))
+                     for rotor in VEHICLE.rotors))
+
+
+@pytest.mark.parametrize(('mass', 'arms', 'said'), [
+    (0.5, 17.0, 'less than any vehicle that flies'), (0.5, 170.0, 'less than any'),
+    (500.0, 0.17, 'more than solid metal'), (27.0, 0.046, 'more than solid metal'),
+    (1.5, 50.0, 'less than any')],
+    ids=['kg cm^2', 'kg mm^2', 'g m^2', 'small, g m^2', 'arms of 50 m'])
+def test_units_that_go_together_and_are_not_SI_are_found(mass, arms, said):
+    [found] = [one for one in findings(flight(), of_size(mass, arms))
+               if one.code == 'vehicle_size']
+    assert found.severity == 'error' and said in found.message and 'in kg' in found.remedy
+
+
+@pytest.mark.parametrize(('mass', 'arms'), [
+    (0.01, 0.02), (0.027, 0.046), (50.0, 0.9), (600.0, 2.5), (1500.0, 6.0), (128.0, 13.0)],
+    ids=['toy', 'Crazyflie', 'sprayer', 'taxi', 'large taxi', 'human-powered'])
+def test_no_size_of_vehicle_is_too_small_or_too_large(mass, arms):
+    assert 'vehicle_size' not in codes(flight(), of_size(mass, arms))
 
 
 def test_saturated_commands_are_found():

@@ -123,12 +123,8 @@ def test_the_end_says_which_groups_have_no_values_of_single_flights():
         'took long; the same command tries again']
 
 
-def test_the_end_says_which_groups_gave_way_and_the_command_ends_with_3(tmp_path, monkeypatch):
-    groups = {'diagnosed': 1, 'refused': 0, 'failed': 0, 'timeout': 0}
-    summary = Summary(3, groups, 0, (), gave_way=('c.csv: another run has diagnosed it',))
-    assert summary_text(summary, 'out').splitlines() == [
-        '3 flights in 1 group: 1 diagnosed',
-        '1 group without a result: c.csv: another run has diagnosed it']
+def run_of(summary, tmp_path, monkeypatch):
+    """Return the exit code of the command, and its last line of JSON, where a run ends so."""
     client = SimpleNamespace(scheduler_info=lambda **_: {'workers': {}}, ncores=dict)
 
     def run_fleet(client, plan, out, **_):
@@ -138,10 +134,44 @@ def test_the_end_says_which_groups_gave_way_and_the_command_ends_with_3(tmp_path
     monkeypatch.setattr(cluster, 'cluster', lambda *_: nullcontext(client))
     monkeypatch.setattr(run, 'run_fleet', run_fleet)
     (tmp_path / 'a.csv').write_text('t,px\n0,1\n0.1,2\n')
-    assert main(['fleet', str(tmp_path / 'a.csv'), '--vehicle', 'hummingbird', '-o',
-                 str(tmp_path / 'out'), '--json', str(tmp_path / 'run.json')]) == 3
-    last = json.loads((tmp_path / 'run.json').read_text().splitlines()[-1])
-    assert last['gave_way'] == list(summary.gave_way)
+    code = main(['fleet', str(tmp_path / 'a.csv'), '--vehicle', 'hummingbird', '-o',
+                 str(tmp_path / 'out'), '--json', str(tmp_path / 'run.json')])
+    return code, json.loads((tmp_path / 'run.json').read_text().splitlines()[-1])
+
+
+def test_the_end_says_which_groups_gave_way_and_the_command_ends_with_3(tmp_path, monkeypatch):
+    groups = {'diagnosed': 1, 'refused': 0, 'failed': 0, 'timeout': 0}
+    summary = Summary(3, groups, 0, (), gave_way=('c.csv: another run has diagnosed it',))
+    assert summary_text(summary, 'out').splitlines() == [
+        '3 flights in 1 group: 1 diagnosed',
+        '1 group without a result: c.csv: another run has diagnosed it']
+    code, last = run_of(summary, tmp_path, monkeypatch)
+    assert code == 3 and last['gave_way'] == list(summary.gave_way)
+
+
+@pytest.mark.parametrize('before', [0, 2])
+def test_where_all_is_refused_the_command_says_so_and_ends_with_3(
+        tmp_path, monkeypatch, capsys, before):
+    """A pipeline has to see that there is no diagnosis, also where it looks a second time."""
+    groups = {'diagnosed': 0, 'refused': 2, 'failed': 0, 'timeout': 0}
+    code, _ = run_of(Summary(3, groups, before, ()), tmp_path, monkeypatch)
+    lines = capsys.readouterr().out.splitlines()
+    assert code == 3
+    assert lines[1] == (
+        f'no flight could be diagnosed; the column reason of {tmp_path}/out/flights says what is '
+        'wrong with each of those refused: mend them, or name other flights')
+
+
+@pytest.mark.parametrize('summary', [
+    Summary(3, {'diagnosed': 1, 'refused': 2, 'failed': 0, 'timeout': 0}, 0, ()),
+    Summary(3, {'diagnosed': 3, 'refused': 0, 'failed': 0, 'timeout': 0}, 3, ()),
+    Summary(1, {'diagnosed': 0, 'refused': 1, 'failed': 0, 'timeout': 0}, 0, (), kept=('b.csv',)),
+    Summary(0, {'diagnosed': 0, 'refused': 0, 'failed': 0, 'timeout': 0}, 0, (), kept=('b.csv',))],
+    ids=['some refused', 'diagnosed before', 'older results stay', 'nothing is new'])
+def test_where_there_is_a_diagnosis_the_command_ends_with_0(
+        tmp_path, monkeypatch, capsys, summary):
+    assert run_of(summary, tmp_path, monkeypatch)[0] == 0
+    assert 'no flight could be diagnosed' not in capsys.readouterr().out
 
 
 @pytest.mark.parametrize('drawn, said', [
