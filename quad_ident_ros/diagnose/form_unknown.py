@@ -18,7 +18,6 @@ from quad_ident_ros.diagnose.judgement import (
 from quad_ident_ros.diagnose.measure import residual_wrenches
 from quad_ident_ros.diagnose.residual_wrench import CHANNELS, ResidualWrench, weights
 from quad_ident_ros.diagnose.result import Unexplained
-from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.greybox.parameters import nominal
 
 SIZES = np.geomspace(0.02, 5.0, 80)
@@ -34,11 +33,11 @@ def effects_of_unknown_form(bench: Bench, judged: Judgement, remains: Sequence[U
     An error of form is a share of what the effect does: large where that is large, and zero where
     the effect does not act. Another cause knows nothing of it. Each makes a variance of the
     residual force or moment beside that of the noise: in proportion to the square of what the
-    effect does, or the same throughout. The former has to be likelier by more than `hidden`
-    standard errors over blocks of time (Vuong, Econometrica 57, 1989), for an effect that comes
-    and goes, matters in each group of outputs in which something remains, and is explained there
-    less well than formulas usually do (`form_error`). Of several effects the one that it is most
-    clearly so for; none where it is for none. The share is the smallest of those groups.
+    effect does, or the same throughout. The former has to be likelier by more than `shown`
+    standard errors over blocks of time (Vuong, Econometrica 57, 1989), for an effect that matters
+    in each group of outputs in which something remains, and is explained there less well than
+    formulas usually do (`form_error`). Of several effects the one that it is most clearly so for;
+    none where it is for none. The share is the smallest of those groups.
     Args: remains: the channels in which something does; wrenches: what the model does not
     explain of each flight learnt from, and noise (12,): that of their states.
     """
@@ -55,10 +54,8 @@ def effects_of_unknown_form(bench: Bench, judged: Judgement, remains: Sequence[U
                 and _explained(bench, judged, cause) < 1.0 - bench.rules.form_error):
             continue
         acts = _action(bench, judged, cause, wrenches, noise)
-        if not comes_and_goes(acts, bench.rules):
-            continue
         found[cause] = in_errors(_likeliest(values, errors, acts) - throughout, block)
-    clear = [cause for cause, value in found.items() if value > bench.rules.hidden]
+    clear = [cause for cause, value in found.items() if value > bench.rules.shown]
     if not clear:
         return {}
     best = max(clear, key=lambda cause: found[cause])
@@ -98,17 +95,6 @@ def in_errors(gained: np.ndarray, block: np.ndarray) -> float:
     sums = np.bincount(block, gained)
     error = np.std(sums) * np.sqrt(len(sums))
     return float(np.sum(sums) / max(error, 1e-300)) if len(sums) > 1 else 0.0
-
-
-def comes_and_goes(acts: np.ndarray, rules: Rules) -> bool:
-    """
-    Return whether an effect does far less at some times than at others, by what it does, (B,).
-
-    Of one that acts nearly alike at all times both variances are nearly the same, and chance says
-    which of them is likelier.
-    """
-    least, most = np.quantile(acts, (0.25, 0.75))
-    return bool(least <= rules.half * most)
 
 
 def _likeliest(values: np.ndarray, errors: np.ndarray, size: np.ndarray) -> np.ndarray:

@@ -84,8 +84,7 @@ class Rules:
     Naming:
       present: probability from which on an effect is named: more likely there than not.
       half: share of the closable gap from which on the effects that matter are named although each
-        of them is less probable than that, if nothing else is: most of it has their cause. An
-        effect comes and goes if the lower quartile of what it does is less than half of the upper.
+        of them is less probable than that, if nothing else is: most of it has their cause.
       doubt: probability of a rival from which on it is not ruled out; an effect of 1 - doubt is
         sure. instead: how many times the odds of a rival must be greater without an effect than
         with it.
@@ -102,8 +101,8 @@ class Rules:
         seen, and from which on it is, so is a parameter that shapes a form, and what differs from
         none is no error of the form of others. Noise needs no
         proof: that of moments between the samples counts from `hidden` on. Measured rotor speeds
-        rule a lag or a delay out by `shown`. What remains is an error of form if it comes and goes
-        with an effect by more than chance, `hidden`.
+        rule a lag or a delay out by `shown`, and by as much what remains has to come and go with
+        an effect to be an error of its form.
     Tolerance (a gap that matters, by group of outputs, at 0.5 s):
       visible: of the noise's gap: of what can be closed below it, shares mean nothing.
       noise_share: of the noise's gap: what remains below it is hard to see in a prediction, and

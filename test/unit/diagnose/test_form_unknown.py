@@ -10,8 +10,7 @@ import pytest
 from residual_functions import linear, times
 
 from quad_ident_ros.diagnose.diagnosis import diagnose
-from quad_ident_ros.diagnose.form_unknown import comes_and_goes, in_errors
-from quad_ident_ros.diagnose.rules import RULES
+from quad_ident_ros.diagnose.form_unknown import in_errors
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import SENSORS
 from quad_ident_ros.model.vehicle import load_vehicle
@@ -19,7 +18,6 @@ from quad_ident_ros.report.received import diagnosis_from
 from quad_ident_ros.report.verdict import form_of, next_step, verdict_line
 
 pytestmark = pytest.mark.slow
-SWING = np.sin(0.1 * np.arange(300))
 NOMINAL = load_vehicle('hummingbird')
 DRAG = 0.3 * NOMINAL.mass     # kg/s
 EFFECTS = ['rotor_drag', 'mass_offset', 'motor_lag']     # few: the search is no matter here
@@ -77,14 +75,6 @@ def test_what_does_not_is_unknown():
     found = found_of(HIGH)
     assert found.verdict == ('rotor_drag', 'unknown')
     assert found.form_unknown == ()
-
-
-@pytest.mark.parametrize(('acts', 'told'), [
-    (np.full(300, 0.7), False), (0.7 + 0.1 * SWING, False), (np.abs(SWING), True),
-    (np.maximum(SWING, 0.0), True)], ids=['steady', 'thrust', 'speed', 'near the ground'])
-def test_what_acts_at_all_times_alike_is_not_told_from_another_cause(acts, told):
-    """Both variances are the same but for little, so that chance would decide."""
-    assert comes_and_goes(acts, RULES) is told
 
 
 def test_one_block_of_time_has_no_standard_error_and_tells_nothing():
