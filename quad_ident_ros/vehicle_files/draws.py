@@ -99,31 +99,33 @@ def table_of_draws(draws: Draws, on_progress: Callable[[float], None] = lambda s
     Return names (C,), units and values (N, C) of drawn vehicles for simulators that batch.
 
     What was drawn, and what a simulator has of it with the effects in it, which begins with
-    `with_effects.`: mass, place of the centre of mass in body axes, inertia about it, thrust and
-    torque coefficient of each rotor; a sag of the battery is left out of it. on_progress is called
-    with the share done.
+    `with_effects.`: mass, places of the centre of mass and of each rotor in body axes, inertia
+    about that centre, thrust and torque coefficient of each rotor; a sag of the battery is left
+    out of it. on_progress is called with the share done.
     """
     first: dict[str, float] = {}
     rows: list[list[float]] = []
     for number, vehicle in enumerate(draws.vehicles):
         if number % AT_ONCE == 0:
             on_progress(number / len(draws.vehicles))
-        first = _with_effects(wanted_of(vehicle, None, ()))
+        first = _with_effects(vehicle, wanted_of(vehicle, None, ()))
         rows.append(list(first.values()))
     table = np.array(rows)
-    units = {'mass': 'kg', 'centre': 'm', 'inertia': 'kg m^2', 'thrust': 'N/(rad/s)^2',
-             'torque': 'N m/(rad/s)^2'}
+    units = {'mass': 'kg', 'centre': 'm', 'inertia': 'kg m^2', 'rotor': 'm',
+             'thrust': 'N/(rad/s)^2', 'torque': 'N m/(rad/s)^2'}
     return ((*draws.names, *(f'with_effects.{name}' for name in first)),
             (*draws.units, *(units[name.partition('_')[0]] for name in first)),
             np.hstack([draws.values, table]))
 
 
-def _with_effects(wanted: Wanted) -> dict[str, float]:
+def _with_effects(vehicle: Vehicle, wanted: Wanted) -> dict[str, float]:
     inertia = {f'inertia_{one}{other}': float(wanted.inertia[i, j])
                for i, one in enumerate('xyz') for j, other in enumerate('xyz') if j >= i}
     return {'mass': wanted.mass,
             **{f'centre_{axis}': float(at) for axis, at in zip('xyz', wanted.centre, strict=True)},
             **inertia,
+            **{f'rotor_{j}_{axis}': float(at) for j, rotor in enumerate(vehicle.rotors, 1)
+               for axis, at in zip('xyz', wanted.arms * rotor.position, strict=True)},
             **{f'thrust_coefficient_{j}': wanted.thrust * (1.0 - float(loss))
                for j, loss in enumerate(wanted.losses, 1)},
             **{f'torque_coefficient_{j}': wanted.torque * (1.0 - float(loss))

@@ -24,8 +24,9 @@ class Part:
     """
     A body of a vehicle: its element, its Body and Pose in the axes of the vehicle's body.
 
-    joints: those with which it moves against the body around it; sites: (Pose, element) by name;
-    source: what its mass comes from, 'inertial' or its shapes; remark: on its inertia, or ''.
+    joints: those with which it moves against the body around it; sites: (Pose, element with its
+    defaults) by name; source: what its mass comes from, 'inertial' or its shapes; remark: on its
+    inertia, or ''.
     """
 
     element: Element
@@ -84,7 +85,7 @@ def _parts(model: Model, element: Element, place: Pose, inherited: str) -> Itera
                 continue    # no actuator can name it: nothing acts there
             within = (model.along(site)[0] if 'fromto' in site.attributes else
                       model.pose_of(site))
-            sites[child.get('name')] = place @ frame @ within, child
+            sites[child.get('name')] = place @ frame @ within, site
         elif child.tag == 'body':
             below.append((frame, child, held))
     body, source = _inertia(model, element, geoms)

@@ -35,6 +35,12 @@ class Base:
         values = np.array(self.draft.data['inertia'], float)
         return np.diag(values) if values.ndim == 1 else values
 
+    @property
+    def shifts(self) -> np.ndarray:
+        """Return how far the rotors of the file move, (n, 3) m, or (0, 3) where it has none."""
+        places = [rotor['position'] for rotor in self.constant('rotors') or ()]
+        return np.array(places).reshape(-1, 3) * (self.wanted.arms - 1.0)
+
     def constant(self, key: str) -> Any:
         """Return what the file has of a key of the vehicle file, or None."""
         return self.draft.data.get(key)

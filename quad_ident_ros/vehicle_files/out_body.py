@@ -24,22 +24,25 @@ ENTRIES = {f'i{"xyz"[i]}{"xyz"[j]}': (i, j) for i, j in (*MOMENTS, *PRODUCTS)}
 TOLD = 1e-6     # of the largest moment: less is rounding
 
 
-def body_for(base: Base, edited: Edits, where: str, main: Body, rest: Sequence[Body]) -> Body:
+def body_for(base: Base, edited: Edits, where: str, main: Body, rest: Sequence[Body],
+             shifted: Sequence[Body] | None = None) -> Body:
     """
     Return what the body that carries the rotors is to be, all in the same axes.
 
-    The other bodies stay, and all together have the mass, the centre of mass and the inertia about
-    it that are wanted. In the place of an inertia that no body has, for it is an estimate, comes
-    the nearest, which is said in `edited`. Returns main itself where nothing changes. Raises
-    InputError where no body can do that; where: file and place of it.
+    The other bodies stay, or become the shifted ones where rotors move, and all together have the
+    mass, the centre of mass and the inertia about it that are wanted. In the place of an inertia
+    that no body has, for it is an estimate, comes the nearest, which is said in `edited`. Returns
+    main itself where nothing changes. Raises InputError where no body can do that; where: file and
+    place of it.
     """
     wanted, whole = base.wanted, combined([main, *rest])
     mass = wanted.mass if differs(base.mass, wanted.mass) else whole.mass
     moved = wanted.inertia - base.inertia
     size = float(np.max(np.abs(base.inertia)))
     moved[np.abs(moved) <= SAME * size] = 0.0
-    if mass == whole.mass and not moved.any() and not wanted.centre.any():
+    if mass == whole.mass and not moved.any() and not wanted.centre.any() and shifted is None:
         return main
+    rest = rest if shifted is None else shifted
     said = ', less the other bodies' if rest else ''
     left = mass - sum(body.mass for body in rest)
     if not left > 0.0:

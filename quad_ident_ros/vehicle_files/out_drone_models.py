@@ -35,6 +35,7 @@ def write(base: Base) -> Edits:
     edited.key('mass', [wanted.mass], 'kg', wanted.sources['mass'])
     edited.key('J', inertia.ravel(), 'kg m2', wanted.sources['inertia'],
                size=float(np.max(np.abs(inertia))))
+    _write_places(edited, base, drone)
     curve = _write_curves(edited, base, drone)
     _write_lags(edited, base, drone, curve)
     drag = -drone.matrix('drag_matrix', 3, 3) if 'drag_matrix' in drone.table else np.zeros((3, 3))
@@ -72,6 +73,16 @@ class _EditedDrone(Edits):
                                                  strict=found is not None):
             if changed:
                 self.replace(first, last, shown([value]))
+
+
+def _write_places(edited: _EditedDrone, base: Base, drone: Drone) -> None:
+    """Have the arm and the mixing matrix hold the places of the rotors."""
+    factors, source = base.wanted.arms[:2], base.wanted.sources['moments']
+    longest, mixing = float(np.max(factors)), drone.matrix('mixing_matrix', 3, ROTORS)
+    mixing[0] *= factors[1] / longest
+    mixing[1] *= factors[0] / longest
+    edited.key('L', [longest * drone.number('L')], 'm', source)
+    edited.key('mixing_matrix', mixing.ravel(), '1', source)
 
 
 def _write_curves(edited: _EditedDrone, base: Base, drone: Drone) -> np.ndarray:
@@ -144,5 +155,5 @@ def _written(values: Sequence[float] | np.ndarray) -> str:
 
 
 TARGET = Target('drone_models', ('.toml',), frozenset((
-    'mass', 'inertia', 'thrust', 'exponent', 'torque', 'speed_max', *LAGS, 'linear_drag')), write,
-    new)
+    'mass', 'inertia', 'moments', 'thrust', 'exponent', 'torque', 'speed_max', *LAGS,
+    'linear_drag')), write, new)

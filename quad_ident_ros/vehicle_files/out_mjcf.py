@@ -3,6 +3,7 @@
 """Vehicles back into MJCF models of MuJoCo."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import permutations
 import math
 
@@ -11,7 +12,7 @@ from scipy.spatial.transform import Rotation
 
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import Vehicle
-from quad_ident_ros.vehicle_files.bodies import Body
+from quad_ident_ros.vehicle_files.bodies import Body, Pose
 from quad_ident_ros.vehicle_files.edit_xml import EditedXml
 from quad_ident_ros.vehicle_files.edits import differs, SAME, shown
 from quad_ident_ros.vehicle_files.mjcf import bodies_of, flying_body
@@ -24,7 +25,9 @@ from quad_ident_ros.vehicle_files.mujoco_code import Rotors
 from quad_ident_ros.vehicle_files.new_mjcf import new
 from quad_ident_ros.vehicle_files.out_base import Base
 from quad_ident_ros.vehicle_files.out_body import body_for, MOMENTS, PRODUCTS
+from quad_ident_ros.vehicle_files.out_places import lack_part
 from quad_ident_ros.vehicle_files.reading import Draft
+from quad_ident_ros.vehicle_files.source import Source
 from quad_ident_ros.vehicle_files.target import Code, Target
 from quad_ident_ros.vehicle_files.ways import BODY, LAGS, why_not
 from quad_ident_ros.vehicle_files.weak_rotors import losses_of
@@ -40,21 +43,27 @@ def write(base: Base) -> EditedXml:
     """Return the Edits that give an MJCF model what is wanted; raises InputError."""
     edited = EditedXml(base.source.text)
     model = model_of(parsed(base.source))
-    element, inherited = flying_body(base.source, model)
-    parts = list(parts_of(model, element, inherited))
-    sites = {name: site for part in parts for name, site in part.sites.items()}
-    pushes = pushes_of(model, sites)
+    parts, pushes, bodies = _layout(base.source, model)
     thrusts = [push for push in pushes if push.pushes]
-    bodies = bodies_of(Draft(base.source.path, ''), parts, {push.site for push in thrusts})
+    moving = _moving(edited, base, model, parts, thrusts)
     # The body itself, or where that is a mere frame the heaviest of those in it.
     main = 0 if bodies[0].mass > 0.0 else max(range(len(bodies)), key=lambda k: bodies[k].mass)
-    body = body_for(base, edited, parts[main].element.where, bodies[main],
-                    [*bodies[:main], *bodies[main + 1:]])
     other = next((one for one in (parts[main].element, *parts[main].element.all('inertial'),
-                                  *(push.element for push in thrusts)) if one.beside), None)
+                                  *(push.element for push in thrusts),
+                                  *(one for one, _, _ in moving)) if one.beside), None)
     if other is not None:
         raise InputError(f'{base.source.path}: the vehicle stands in {other.path}, which it '
                          'includes; give that file as --base')
+    shifted = None
+    if moving:
+        for one, before, shift in moving:
+            edited.attribute(one, 'pos', before + shift, 'm', base.wanted.sources['moments'],
+                             usual=(0.0, 0.0, 0.0), size=1.0)
+        there = replace(base.source, text=edited.result())
+        shifted = _layout(there, model_of(parsed(there)))[2]
+        del shifted[main]
+    body = body_for(base, edited, parts[main].element.where, bodies[main],
+                    [*bodies[:main], *bodies[main + 1:]], shifted)
     if body is not bodies[main]:
         if 'settotalmass' in model.compiler:
             raise InputError(f'{base.source.path}: settotalmass of <compiler> scales every mass; '
@@ -69,10 +78,45 @@ def write(base: Base) -> EditedXml:
         edited.say_several(parts[main].element, len(bodies))
     edited.lack(['speed_max'], 'a command is a thrust here, and speeds are not of the file')
     _write_thrusts(edited, base, thrusts)
+    _write_moments(edited, base, parts, pushes)
     # Moments that are controls of their own come from the same rotors.
     _write_lags(edited, base, thrusts, pushes, _filter(model))
     _write_delay(edited, base, thrusts, pushes, step_of(model))
     return edited
+
+
+def _layout(source: Source, model: Model) -> tuple[list[Part], list[Push], list[Body]]:
+    """Return the parts of a vehicle, what pushes at its sites, and the Body of each part."""
+    parts = list(parts_of(model, *flying_body(source, model)))
+    pushes = pushes_of(model, _sites(parts))
+    return parts, pushes, bodies_of(Draft(source.path, ''), parts,
+                                    {push.site for push in pushes if push.pushes})
+
+
+def _sites(parts: Sequence[Part]) -> dict[str, tuple[Pose, Element]]:
+    return {name: site for part in parts for name, site in part.sites.items()}
+
+
+def _moving(edited: EditedXml, base: Base, model: Model, parts: Sequence[Part],
+            thrusts: Sequence[Push]) -> list[tuple[Element, np.ndarray, np.ndarray]]:
+    """
+    Return elements that move with the rotors, their positions and shifts (3,), m, around them.
+
+    It is the site of a rotor, or its body where that turns: a site beside the axis would turn.
+    """
+    if not base.shifts.any():
+        return []
+    found: dict[tuple[str, int], tuple[Element, np.ndarray, np.ndarray]] = {}
+    for push, shift in zip(thrusts, base.shifts, strict=True):
+        part = next(part for part in parts if push.site in part.sites)
+        turns = part is not parts[0] and bool(part.joints)
+        frame, one = (part.pose, part.element) if turns else part.sites[push.site]
+        if 'fromto' in one.attributes:
+            lack_part(edited, base.wanted, 'arms', f'{one.place()} stands between two points')
+            return []
+        axes = frame.rotation @ model.rotation_of(one).T
+        found[one.path, one.start] = one, model.pose_of(one).position, axes.T @ shift
+    return list(found.values())
 
 
 def code(vehicle: Vehicle, base: Base, name: str) -> Code | None:
@@ -80,8 +124,7 @@ def code(vehicle: Vehicle, base: Base, name: str) -> Code | None:
     if base.constant('thrust_coefficient') is None:
         return None
     model = model_of(parsed(base.source))
-    parts = parts_of(model, *flying_body(base.source, model))
-    pushes = pushes_of(model, {name: site for part in parts for name, site in part.sites.items()})
+    pushes = _layout(base.source, model)[1]
     places = [child.start for holder in model.root.all('actuator') for child in holder.children]
     return program(vehicle, base.wanted, Rotors.of([push for push in pushes if push.pushes],
                                                    places), name, _form_of_lag(vehicle, base),
@@ -126,6 +169,32 @@ def _write_thrusts(edited: EditedXml, base: Base, thrusts: list[Push]) -> None:
             ('torque_losses', differs(torque_before, torque_loss, 1.0))) if changed}
         edited.attribute(push.element, 'gear', stated * factors, '1 or m',
                          ', '.join(sorted(sources)), usual=(1.0,))
+
+
+def _write_moments(edited: EditedXml, base: Base, parts: Sequence[Part],
+                   pushes: Sequence[Push]) -> None:
+    """Have moments that are controls of their own be larger where those of the rotors are."""
+    wanted, sites = base.wanted, _sites(parts)
+    arms = wanted.arms if base.constant('rotors') is None else np.ones(3)
+    factors = np.array([arms[1], arms[0], wanted.turning])
+    moments = [push for push in pushes if not push.pushes]
+    if not moments:
+        reason = 'the file has no moments of its rotors'
+        if base.constant('rotors') is None:
+            lack_part(edited, wanted, 'arms', reason)
+        if base.constant('torque_coefficient') is None:
+            lack_part(edited, wanted, 'torque', reason)
+    for push in moments if (factors != 1.0).any() else ():
+        axes = sites[push.site][0].rotation
+        words = push.element.get('gear', '1').split()
+        stated = np.zeros(6)
+        stated[:len(words)] = push.element.numbers('gear', len(words), (1.0,))
+        gear = np.array([*stated[:3], *axes.T @ (factors * (axes @ stated[3:]))])
+        size = float(np.max(np.abs(gear)))
+        gear[np.abs(gear) <= SAME * size] = 0.0
+        count = max([len(words), *(np.flatnonzero(gear) + 1)])
+        edited.attribute(push.element, 'gear', gear[:count], '1 or m', wanted.sources['moments'],
+                         usual=[0.0] * count, size=size)
 
 
 def _filter(model: Model) -> str:
@@ -272,5 +341,5 @@ def _principal(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 TARGET = Target('mjcf', ('.xml', '.mjcf'),
-                frozenset((*BODY, *LAGS, 'thrust', 'losses', 'torque', 'torque_losses', 'delay')),
-                write, new, code)
+                frozenset((*BODY, *LAGS, 'moments', 'thrust', 'losses', 'torque', 'torque_losses',
+                           'delay')), write, new, code)

@@ -30,6 +30,8 @@ def write(base: Base) -> Edits:
         at = 'XYZ'.index(axes[0]), 'XYZ'.index(axes[1])
         edited.set(f'SIH_I{axes}', sign * float(inertia[at]), 'kg m2',
                    wanted.sources['inertia'], size)
+    for name, factor in (('SIH_L_PITCH', wanted.arms[0]), ('SIH_L_ROLL', wanted.arms[1])):
+        edited.scale(name, float(factor), 'm', wanted.sources['moments'])
     for name, key, value, unit in (('SIH_T_MAX', 'thrust', wanted.thrust, 'N'),
                                    ('SIH_Q_MAX', 'torque', wanted.torque, 'N m')):
         edited.set(name, value * FULL_SPEED ** 2, unit, wanted.sources[key])
@@ -69,6 +71,11 @@ class _EditedParameters(Edits):
         elif any(self.enter(f'usual {name} of PX4', [USUAL[name]], [new], unit, source, size)):
             self._add(name, new)
 
+    def scale(self, name: str, factor: float, unit: str, source: str) -> None:
+        """Have a parameter hold the number that it has, times a factor."""
+        known = self.parameters.get(name)
+        self.set(name, factor * (USUAL[name] if known is None else known.value), unit, source)
+
     def _add(self, name: str, new: float) -> None:
         """Put a line before that of another parameter, in the form of that but for its comment."""
         key, other = max(self.parameters.items(), key=lambda each: (
@@ -83,4 +90,4 @@ class _EditedParameters(Edits):
 
 
 TARGET = Target('px4_sih', ('', '.params', '.txt', '.sh', '.post'), frozenset((
-    'mass', 'inertia', 'thrust', 'torque', *LAGS, 'linear_drag', 'wind')), write, new)
+    'mass', 'inertia', 'moments', 'thrust', 'torque', *LAGS, 'linear_drag', 'wind')), write, new)

@@ -10,9 +10,12 @@ from quad_ident_ros.vehicle_files.edit_literals import EditedTable
 from quad_ident_ros.vehicle_files.new_rotorpy import new
 from quad_ident_ros.vehicle_files.out_base import Base
 from quad_ident_ros.vehicle_files.out_body import ENTRIES, inertia_for
+from quad_ident_ros.vehicle_files.out_places import lack_part
 from quad_ident_ros.vehicle_files.rotorpy import table_of
 from quad_ident_ros.vehicle_files.target import Target
 from quad_ident_ros.vehicle_files.ways import BODY, LAGS
+
+FIXED = 'rotor_pos is not written as a list or a dictionary of places'
 
 
 def write(base: Base) -> EditedTable:
@@ -26,10 +29,14 @@ def write(base: Base) -> EditedTable:
     for name, at in ENTRIES.items():
         edited.entry(f'I{name[1:]}', float(inertia[at]), 'kg m2',
                      wanted.sources['inertia'], size)
-    if wanted.centre.any() and not edited.vectors(
-            'rotor_pos', [np.array(rotor['position']) - wanted.centre
-                          for rotor in base.constant('rotors')], 'm', wanted.sources['centre']):
-        edited.lack(['centre'], 'rotor_pos is not written as a list or a dictionary of places')
+    moves = [(wanted.sources[key], moved) for key, moved in (
+        ('centre', wanted.centre.any()), ('moments', base.shifts.any())) if moved]
+    if moves and not edited.vectors(
+            'rotor_pos', [np.array(rotor['position']) + shift - wanted.centre for rotor, shift in
+                          zip(base.constant('rotors'), base.shifts, strict=True)], 'm',
+            ', '.join(source for source, _ in moves)):
+        edited.lack(['centre'], FIXED)
+        lack_part(edited, wanted, 'arms', FIXED)
     for name, key, value, unit in (
             ('k_eta', 'thrust', wanted.thrust, 'N/(rad/s)^2'),
             ('k_m', 'torque', wanted.torque, 'N m/(rad/s)^2')):
@@ -63,5 +70,5 @@ def _write_motors(edited: EditedTable, base: Base) -> None:
 
 
 TARGET = Target('rotorpy', ('.py',), frozenset((
-    *BODY, *LAGS, 'thrust', 'torque', 'speed_max', 'rotor_drag', 'body_drag', 'inflow',
+    *BODY, *LAGS, 'moments', 'thrust', 'torque', 'speed_max', 'rotor_drag', 'body_drag', 'inflow',
     'flapping')), write, new)

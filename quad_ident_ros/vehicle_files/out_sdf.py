@@ -10,8 +10,10 @@ from quad_ident_ros.vehicle_files.new_sdf import new
 from quad_ident_ros.vehicle_files.out_base import Base
 from quad_ident_ros.vehicle_files.out_body import body_for, ENTRIES, MOMENTS
 from quad_ident_ros.vehicle_files.out_motors import HOLDS, write_motors
+from quad_ident_ros.vehicle_files.out_places import beside_others, lack_part
 from quad_ident_ros.vehicle_files.reading import Draft
-from quad_ident_ros.vehicle_files.sdf import flying_model, layout_of, pose_of_inertial
+from quad_ident_ros.vehicle_files.sdf import flying_model, Layout, layout_of, pose_of_inertial
+from quad_ident_ros.vehicle_files.sdf_frames import Tree
 from quad_ident_ros.vehicle_files.target import Target
 from quad_ident_ros.vehicle_files.ways import BODY
 from quad_ident_ros.vehicle_files.xml_tree import Element, parse
@@ -24,8 +26,12 @@ def write(base: Base) -> EditedXml:
     layout = layout_of(Draft(path, ''), tree)
     link = tree.links[layout.base]
     rest = [body for name, body in layout.bodies.items() if name != layout.base]
-    main = layout.bodies[layout.base]
-    body = body_for(base, edited, link.where, main, rest)
+    main, shifted = layout.bodies[layout.base], None
+    if base.shifts.any() and _move_rotors(edited, base, tree, layout):
+        _, after = flying_model(base.source, parse(path, edited.result()))
+        shifted = [body for name, body in layout_of(Draft(path, ''), after).bodies.items()
+                   if name != layout.base]
+    body = body_for(base, edited, link.where, main, rest, shifted)
     if link.path != path:
         edited.lack(BODY, f'it stands in {link.path}; give the whole model as `gz sdf -p` prints '
                     'it')
@@ -36,9 +42,44 @@ def write(base: Base) -> EditedXml:
     if any(plugin.element.path != path for plugin in plugins):
         edited.lack(HOLDS, f'the motors are in {plugins[0].element.path}; give the whole model '
                     'as `gz sdf -p` prints it')
+        lack_part(edited, base.wanted, 'torque', edited.lacking['torque'])
     else:
         write_motors(edited, base, plugins)
     return edited
+
+
+def _move_rotors(edited: EditedXml, base: Base, tree: Tree, layout: Layout) -> bool:
+    """Have the rotors' links and joints stand where they are wanted; return whether they do."""
+    axes = tree.place_of(layout.base).rotation
+    shifts: dict[str, np.ndarray] = {}
+    for (plugin, scope), name, shift in zip(layout.plugins, layout.links, base.shifts,
+                                            strict=True):
+        shifts |= dict.fromkeys((name, scope + plugin.joint), axes @ shift)
+    paths = {tree.links[layout.base].path, *(tree.frames[name].element.path for name in shifts)}
+    others = sorted(paths - {base.source.path})
+    if others:
+        lack_part(edited, base.wanted, 'arms', f'the rotors stand in {others[0]}; give the whole '
+                  'model as `gz sdf -p` prints it')
+        return False
+    source = base.wanted.sources['moments']
+    for name, shift in beside_others(shifts, {each: frame.parent for each, frame in
+                                              tree.frames.items()}).items():
+        frame = tree.frames[name]
+        if np.linalg.norm(shift) > 0.0:
+            inside = tree.place_of(frame.parent).rotation.T @ shift
+            _write_place(edited, frame.element, frame.pose.position + inside, source)
+    return True
+
+
+def _write_place(edited: EditedXml, element: Element, position: np.ndarray, source: str) -> None:
+    """Have the <pose> of an element hold a position (3,), m, and the rotation that it has."""
+    pose = element.first('pose')
+    if pose is None or not pose.text.strip():
+        edited.content(element, 'pose', [*position, 0, 0, 0], 'm', source, usual=[0.0] * 6,
+                       size=1.0)
+    else:
+        stated = [float(word) for word in pose.text.split()]
+        edited.content(element, 'pose', [*position, *stated[3:]], 'm', source, size=1.0)
 
 
 def _write_body(edited: EditedXml, base: Base, link: Element, body: Body) -> None:
@@ -47,14 +88,7 @@ def _write_body(edited: EditedXml, base: Base, link: Element, body: Body) -> Non
     assert inertial is not None
     _, rotation = pose_of_inertial(link)
     edited.content(inertial, 'mass', [body.mass], 'kg', wanted.sources['mass'], usual=[1.0])
-    pose = inertial.first('pose')
-    if pose is None or not pose.text.strip():
-        edited.content(inertial, 'pose', [*body.centre, 0, 0, 0], 'm', wanted.sources['centre'],
-                       usual=[0.0] * 6, size=1.0)
-    else:
-        stated = [float(word) for word in pose.text.split()]
-        edited.content(inertial, 'pose', [*body.centre, *stated[3:]], 'm',
-                       wanted.sources['centre'], size=1.0)
+    _write_place(edited, inertial, body.centre, wanted.sources['centre'])
     matrix = inertial.first('inertia')
     assert matrix is not None
     turned = rotation.T @ body.inertia @ rotation
@@ -64,4 +98,5 @@ def _write_body(edited: EditedXml, base: Base, link: Element, body: Body) -> Non
                        usual=[1.0 if at in MOMENTS else 0.0], size=size)
 
 
-TARGET = Target('sdf', ('.sdf', '.world', '.xml'), frozenset((*BODY, *HOLDS)), write, new)
+TARGET = Target('sdf', ('.sdf', '.world', '.xml'), frozenset((*BODY, 'moments', *HOLDS)), write,
+                new)

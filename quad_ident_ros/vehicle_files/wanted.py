@@ -25,24 +25,28 @@ class Wanted:
     Numbers that a file may have, with the effects in them.
 
     mass kg; centre (3,) m, of mass, from that of the file; inertia (3, 3) kg m^2 about the centre
-    of mass; thrust N/(rad/s)^2, at hover, rad/s, and exponent: of the rotor speed that the thrust
-    goes with; torque N m/(rad/s)^2; losses, torque_losses (n,): shares of the thrust and of the
-    torque that each rotor has lost; speed_max rad/s; rise, fall s, time constants; rotor_drag
-    kg/rad, force per speed of a rotor and air velocity across its axis; linear_drag (3,) N/(m/s);
-    body_drag (3,) kg/m; inflow: kg/rad, thrust of a rotor lost per its speed and air velocity
-    along its axis, and kg/m, won per square of that across it; flapping kg m/rad, moment per speed
-    of a rotor and air velocity; wind (3,) m/s; delay of the commands, s.
+    of mass; arms (3,): factors on the places of the rotors from the centre of mass of the file;
+    thrust N/(rad/s)^2, at hover, rad/s, and exponent: of the rotor speed that the thrust goes
+    with; torque N m/(rad/s)^2, turning: the factor in it on that of the vehicle; losses,
+    torque_losses (n,): shares of the thrust and of the torque that each rotor has lost; speed_max
+    rad/s; rise, fall s, time constants; rotor_drag kg/rad, force per speed of a rotor and air
+    velocity across its axis; linear_drag (3,) N/(m/s); body_drag (3,) kg/m; inflow: kg/rad, thrust
+    of a rotor lost per its speed and air velocity along its axis, and kg/m, won per square of that
+    across it; flapping kg m/rad, moment per speed of a rotor and air velocity; wind (3,) m/s;
+    delay of the commands, s.
     sources: what each comes from, by key.
     """
 
     mass: float
     centre: np.ndarray
     inertia: np.ndarray
+    arms: np.ndarray
     thrust: float
     hover: float
     exponent: float
     losses: np.ndarray
     torque: float
+    turning: float
     torque_losses: np.ndarray
     speed_max: float
     rise: float
@@ -77,11 +81,12 @@ def wanted_of(vehicle: Vehicle, sag: float | None, holds: Collection[Key]) -> Wa
     # About hover the curve with an offset goes with this power.
     exponent = scale.get('exponent', SQUARE / (1.0 + scale.get('offset', 0.0)))
     mismatch = effects.get('inertia_mismatch', {})
-    # Where the rotors' moments differ, the inertia that answers them alike, to which the centre
-    # of mass is nearer: its moment was not in the factors.
-    gains = np.array([mismatch.get(moment, 1.0) * mismatch.get(f'moment_{axis}', 1.0)
-                      for axis, moment in zip('xyz', ('arms_y', 'arms_x', 'torque'), strict=True)])
-    moments = np.array(vehicle.inertia) / gains * [
+    # Factors on the rotors' moments are in places and torque: an inertia over them would answer
+    # all other moments by them, too.
+    roll, pitch, turning = (
+        mismatch.get(moment, 1.0) * mismatch.get(f'moment_{axis}', 1.0)
+        for axis, moment in zip('xyz', ('arms_y', 'arms_x', 'torque'), strict=True))
+    moments = np.array(vehicle.inertia) * [
         mismatch.get(f'factor_{axis}', 1.0) * mismatch.get(f'inertia_{axis}', 1.0)
         * mismatch.get(2 * axis, 1.0) for axis in 'xyz']
     roots = np.sqrt(moments)
@@ -97,12 +102,13 @@ def wanted_of(vehicle: Vehicle, sag: float | None, holds: Collection[Key]) -> Wa
     losses, torque_losses = losses_of(effects, len(vehicle.rotors))
     return Wanted(
         mass=vehicle.mass + effects.get('mass_offset', {}).get('mass', 0.0),
-        centre=np.array([shift.get(axis, 0.0) for axis in 'xyz'])
-        / [gains[1], gains[0], math.sqrt(gains[0] * gains[1])],
+        centre=np.array([shift.get(axis, 0.0) for axis in 'xyz']),
         inertia=replace(vehicle, inertia=tuple(moments), products=tuple(products)).inertia_matrix,
+        arms=np.array([pitch, roll, 1.0]),
         thrust=factor * vehicle.thrust_coefficient, hover=vehicle.hover_speed,
-        exponent=exponent, losses=losses, torque=vehicle.torque_coefficient,
-        torque_losses=torque_losses, speed_max=vehicle.speed_max, rise=rise, fall=fall,
+        exponent=exponent, losses=losses, torque=turning * vehicle.torque_coefficient,
+        turning=turning, torque_losses=torque_losses, speed_max=vehicle.speed_max, rise=rise,
+        fall=fall,
         rotor_drag=float(by_speed[:2].mean()) / speeds, linear_drag=linear,
         body_drag=np.array([body.get(axis, 0.0) + body.get(kind, 0.0) for axis, kind in
                             zip('xyz', ('horizontal', 'horizontal', 'vertical'), strict=True)]),
@@ -141,8 +147,9 @@ def _lags(effects: Values) -> tuple[float, float]:
 def _sources(vehicle: Vehicle, sag: float | None, holds: Collection[Key]) -> dict[str, str]:
     """Return the constant and the effects that each number comes from."""
     names: dict[Key, list[str]] = {
-        'mass': ['mass'], 'centre': [], 'inertia': ['inertia'], 'thrust': ['thrust_coefficient'],
-        'torque': ['torque_coefficient'], 'speed_max': ['speed_max'], 'rise': [], 'fall': [],
+        'mass': ['mass'], 'centre': [], 'inertia': ['inertia'], 'moments': ['rotors'],
+        'thrust': ['thrust_coefficient'], 'torque': ['torque_coefficient'],
+        'speed_max': ['speed_max'], 'rise': [], 'fall': [],
         'rotor_drag': [], 'exponent': [], 'losses': [], 'torque_losses': [],
         'linear_drag': ['linear_drag'], 'body_drag': [], 'inflow': [], 'flapping': [], 'wind': [],
         'delay': []}
@@ -151,7 +158,7 @@ def _sources(vehicle: Vehicle, sag: float | None, holds: Collection[Key]) -> dic
     for effect, form, _ in forms_of(vehicle.effects):
         way = way_of(effect, form, holds)
         if way is not None and (effect != 'battery_sag' or sag is not None):
-            for key in way.keys:
+            for key in (*way.keys, *(('torque',) if 'moments' in way.keys else ())):
                 if effect not in names[key]:
                     names[key].append(effect)
     names['centre'] = names['centre'] or names['mass']

@@ -11,7 +11,7 @@ from typing import Literal
 
 from quad_ident_ros.effects.registry import EFFECTS, FORMS, Values
 
-Key = Literal['mass', 'centre', 'inertia', 'thrust', 'exponent', 'losses', 'torque',
+Key = Literal['mass', 'centre', 'inertia', 'moments', 'thrust', 'exponent', 'losses', 'torque',
               'torque_losses', 'speed_max', 'rise', 'fall', 'rotor_drag', 'linear_drag',
               'body_drag', 'inflow', 'flapping', 'wind', 'delay']
 Keys = tuple[Key, ...]
@@ -67,11 +67,11 @@ WAYS: dict[tuple[str, str], tuple[Way, ...]] = {
                                           'motion'),),
     ('inertia_mismatch', 'matrix'): (Way(('inertia',), 'a part of the matrix of inertia, which is '
                                          'the same motion'),),
-    ('inertia_mismatch', 'moments'): (Way(('inertia',), 'the inertia over the factors, which '
-                                          'differs in the gyroscopic moment'),),
+    ('inertia_mismatch', 'moments'): (Way(('moments',), 'the places of the rotors and their '
+                                          'torque, which is the same motion'),),
     ('inertia_mismatch', 'moments_and_inertia'): (
-        Way(('inertia',), 'the inertia over the factors on the moments, which differs in the '
-                          'gyroscopic moment'),),
+        Way(('moments', 'inertia'), 'the places of the rotors, their torque and a part of the '
+                                    'inertia, which is the same motion'),),
     ('com_offset', 'fixed'): (Way(('centre',), 'the place of the centre of mass, which is the '
                                   'same motion'),),
 }

@@ -10,6 +10,7 @@ from quad_ident_ros.effects.registry import EFFECTS, NULL, SLICES, vector
 from quad_ident_ros.model.actuators import actuated
 from quad_ident_ros.model.attitude import quaternion_from_euler
 from quad_ident_ros.model.dynamics import Course, predict
+from quad_ident_ros.model.rigid_body import derivatives, INPUT, rotor_table, vehicle_vector
 from quad_ident_ros.model.vehicle import load_vehicle, Rotor
 
 IRIS = load_vehicle('iris')
@@ -68,6 +69,15 @@ def roll(vehicle, effects, course, start):
     """Return the recorded states (N, 13) of a flight along a course."""
     theta = vector(effects, vehicle)
     return predict(vehicle, theta, course, start[None], [0], len(course.t) - 1)[0]
+
+
+def accelerations(vehicle, start, speeds):
+    """Return the accelerations (6,), world and body, m/s^2 and rad/s^2, at rotor speeds (1, n)."""
+    out = np.empty((1, 13))
+    derivatives(vehicle_vector(vehicle)[:, None], rotor_table(vehicle),
+                vector(vehicle.effects, vehicle), np.zeros(1), start[None], speeds,
+                np.zeros((1, speeds.shape[1])), np.zeros((1, INPUT)), out)
+    return np.array([*out[0, 3:6], *out[0, 10:]])
 
 
 def acted(t, commands, delay=0.0, lag=0.0):

@@ -94,12 +94,14 @@ def written(simulator, folder, found=None):
 
 CARRIED = {     # beside the mass: what each of the formats has a number for
     rotorpy: lambda vehicle: {
-        'motor_lag': {'time_constant': 0.05}, 'rotor_drag': {'coefficient': 0.6 * vehicle.mass}},
-    mujoco: lambda vehicle: {'inertia_mismatch': {'factor_x': 1.2, 'factor_z': 0.9},
+        'motor_lag': {'time_constant': 0.05}, 'rotor_drag': {'coefficient': 0.6 * vehicle.mass},
+        'inertia_mismatch': {'arms_x': 1.3, 'arms_y': 1.2, 'torque': 0.8}},
+    mujoco: lambda vehicle: {'inertia_mismatch': {'moment_x': 1.2, 'moment_y': 0.9,
+                                                  'moment_z': 1.1, 'inertia_z': 0.9},
                              'com_offset': {'x': 0.003}},
     **dict.fromkeys((drone_models, crazyflow), lambda vehicle: {
         'rotor_drag': {'x': vehicle.mass, 'y': 0.5 * vehicle.mass},
-        'inertia_mismatch': {'factor_y': 1.2}})}
+        'inertia_mismatch': {'arms_x': 1.2, 'arms_y': 1.1, 'torque': 1.1}})}
 
 
 @pytest.mark.slow

@@ -5,17 +5,15 @@
 from dataclasses import replace
 import sys
 
-from effect_flights import roll, state, steps
+from effect_flights import accelerations, roll, state, steps
 from exported import base
 import numpy as np
 import pytest
 from test_vehicle_files_mjcf import DELAYED
 
 from quad_ident_ros.cli.main import main
-from quad_ident_ros.effects.registry import vector
 from quad_ident_ros.effects.thrust_scale_curve import SPEED_OF
 from quad_ident_ros.model.motors import rotor_speeds
-from quad_ident_ros.model.rigid_body import derivatives, INPUT, rotor_table, vehicle_vector
 from quad_ident_ros.model.vehicle import load_vehicle, write_vehicle
 from quad_ident_ros.vehicle_files.export import export
 from quad_ident_ros.vehicle_files.load import read_vehicle
@@ -41,7 +39,9 @@ SETS = ({'rotor_drag': {'coefficient': 0.2}, 'body_drag': {'horizontal': 0.02, '
                           'at_130': 0.95},
          'inertia_mismatch': {'xx': 1.2, 'yy': 1.1, 'zz': 0.9, 'xy': 0.1, 'xz': -0.08,
                               'yz': 0.05}},
-        {'blade_flapping': {'hub_coefficient': 0.01, 'rate_damping': 2e-3}})
+        {'blade_flapping': {'hub_coefficient': 0.01, 'rate_damping': 2e-3},
+         'rotor_drag': {'coefficient': 0.2},
+         'inertia_mismatch': {'arms_x': 1.3, 'arms_y': 1.2, 'torque': 0.8}})
 IN_NUMBERS = {'rotor_fault', 'inertia_mismatch'}   # of MJCF itself
 VEHICLE = replace(load_vehicle('hummingbird'), linear_drag=(0.1, 0.15, 0.2),
                   rotational_drag=(1e-3, 2e-3, 3e-3))
@@ -69,14 +69,6 @@ def model_of(vehicle, source=None):
 
 def test_every_law_is_in_one_of_the_sets():
     assert set(LINES) <= {(name, form) for effects in SETS for name, form, _ in forms_of(effects)}
-
-
-def accelerations(vehicle, start, speeds):
-    out = np.empty((1, 13))
-    derivatives(vehicle_vector(vehicle)[:, None], rotor_table(vehicle),
-                vector(vehicle.effects, vehicle), np.zeros(1), start[None], speeds,
-                np.zeros((1, 4)), np.zeros((1, INPUT)), out)
-    return [*out[0, 3:6], *out[0, 10:]]
 
 
 @pytest.mark.parametrize('speed', SPEED_OF.values())

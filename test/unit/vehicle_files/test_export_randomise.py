@@ -126,6 +126,8 @@ def test_the_array_has_what_simulators_have_with_the_effects_in_it():
         assert column[f'with_effects.torque_coefficient_{j}'] == pytest.approx(
             share * BARE.torque_coefficient)
     assert unit['with_effects.torque_coefficient_3'] == 'N m/(rad/s)^2'
+    assert column['with_effects.rotor_2_y'] == pytest.approx(BARE.rotors[1].position[1])
+    assert unit['with_effects.rotor_2_y'] == 'm'
     assert column['with_effects.inertia_zz'] == pytest.approx(BARE.inertia[2])
     assert unit['with_effects.inertia_xy'] == 'kg m^2' and unit['mass_offset.mass'] == 'kg'
     assert unit['with_effects.thrust_coefficient_4'] == 'N/(rad/s)^2'

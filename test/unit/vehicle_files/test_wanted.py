@@ -1,36 +1,233 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What a file of another simulator is to say of a vehicle moves as the vehicle does."""
+"""A file of another simulator turns as the vehicle does whose rotors' moments are off."""
 
 from dataclasses import replace
 
+from effect_flights import accelerations, state
+from exported import again, base
+import numpy as np
 import pytest
+import test_vehicle_files_mjcf as mjcf
+import test_vehicle_files_sdf as sdf
+import test_vehicle_files_urdf as urdf
 
-from quad_ident_ros.diagnose.carried import carried
-from quad_ident_ros.flight.fly import fly_closed_loop
-from quad_ident_ros.flight.measure import SENSORS
-from quad_ident_ros.model.vehicle import load_vehicle
-from quad_ident_ros.vehicle_files.wanted import wanted_of
+from quad_ident_ros.vehicle_files.bodies import about
+from quad_ident_ros.vehicle_files.export import export
+from quad_ident_ros.vehicle_files.load import read_vehicle
+from quad_ident_ros.vehicle_files.source import Source
+from quad_ident_ros.vehicle_files.speed_unit import counted
+from quad_ident_ros.vehicle_files.targets import TARGETS
+from quad_ident_ros.vehicle_files.written import read_back, with_code
 
-NOMINAL = load_vehicle('hummingbird')
-COURSES = ('figure8', 'lissajous')
-OFFSET = {'com_offset': {'x': 0.004, 'y': -0.003, 'z': 0.005}}
+ARMS = {'arms_x': 1.3, 'arms_y': 1.2, 'torque': 0.8}
+MISMATCHES = {'moments': ARMS, 'moments_and_inertia': {
+    'moment_x': 1.3, 'moment_y': 0.8, 'moment_z': 1.1, 'inertia_y': 1.2, 'inertia_z': 0.9}}
+# What turns the vehicle besides its rotors' arms, where files have it.
+TURNING = {'centre': ('com_offset', {'x': 0.04, 'y': -0.03, 'z': 0.05}),
+           'flapping': ('blade_flapping', {'coefficient': 0.01})}
 
 
-@pytest.mark.parametrize('mismatch', [
-    {'arms_x': 1.3, 'arms_y': 1.2, 'torque': 0.8},
-    {'moment_x': 1.3, 'moment_y': 0.8, 'moment_z': 1.1, 'inertia_y': 1.2, 'inertia_z': 0.9}],
-    ids=['arms', 'moments and inertia'])
-def test_arms_that_are_off_beside_a_centre_of_mass_that_is(mismatch):
-    """A file says longer arms as less inertia, on which the offset turns the vehicle more."""
-    vehicle = replace(NOMINAL, effects=OFFSET | {'inertia_mismatch': mismatch})
-    flights = [fly_closed_loop(NOMINAL, vehicle.effects, course, duration=8.0, seed=k,
-                               noise=SENSORS['clean']) for k, course in enumerate(COURSES)]
-    wanted = wanted_of(vehicle, None, ('inertia', 'centre'))
-    x, y, z = wanted.centre
-    written = replace(NOMINAL, inertia=tuple(wanted.inertia.diagonal()),
-                      effects={'com_offset': {'x': x, 'y': y, 'z': z}})
-    gaps = carried(flights, NOMINAL, vehicle, {'written': written}).gaps
-    # The rest is gyroscopic, which factors on the moments do not change and the inertia does.
-    for group in ('attitude', 'rate'):
-        assert gaps['written'][group] < 0.1 * gaps['nominal'][group]
+def off(vehicle, to, mismatch):
+    """Return a vehicle with moments that are off, and what else turns it that a target has."""
+    arm = vehicle.arm_length
+    more = {name: {key: value * arm for key, value in values.items()}
+            for key, (name, values) in TURNING.items() if key in TARGETS[to].holds}
+    return replace(vehicle, effects={**vehicle.effects, **more, 'inertia_mismatch': mismatch})
+
+
+def assert_turns_alike(read, vehicle, rel=1e-9):
+    draw = np.random.default_rng(5)
+    for _ in range(10):
+        start = state((0, 0, 1), draw.normal(0, 3, 3), draw.uniform(-0.5, 0.5, 3),
+                      draw.normal(0, 3, 3))
+        speeds = vehicle.hover_speed * draw.uniform(0.8, 1.2, (1, len(vehicle.rotors)))
+        ours, theirs = (accelerations(one, start, speeds)[3:] for one in (vehicle, read))
+        np.testing.assert_allclose(theirs, ours, rtol=rel, atol=rel * np.max(np.abs(ours)))
+
+
+@pytest.mark.parametrize('form', MISMATCHES)
+@pytest.mark.parametrize('new', [False, True], ids=['base', 'new'])
+@pytest.mark.parametrize('to', TARGETS)
+def test_a_file_that_is_read_again_turns_as_the_vehicle(to, new, form):
+    """Flapping, a drag at the rotors, the spin of rotors: each moment on the inertia it had."""
+    source, vehicle = base(to)
+    vehicle = off(vehicle, to, MISMATCHES[form])
+    found = export(vehicle, to, None if new else source)
+    read = counted(again(source, found), 1.0 / found.unit)
+    if to == 'urdf' and new:    # Bullet's damping as a drag of rotors, which need an inertia there
+        read = replace(read, effects={**read.effects, 'rotor_drag': {}, 'rotor_gyro': {}})
+    assert_turns_alike(read, vehicle)
+    [fate] = [fate for fate in found.fates.nearest if fate.name == 'inertia_mismatch']
+    assert (fate.form, fate.reason[-11:]) == (form, 'same motion')
+    # Read and written again, not a byte changes.
+    back = export(again(source, found), to, replace(source, text=found.text))
+    assert back.text == found.text
+
+
+def test_code_beside_a_model_turns_it_as_the_vehicle():
+    """Its moments, which are not the rotors' arms', act on the inertia that the vehicle has."""
+    _, vehicle = base('mujoco')
+    vehicle = off(replace(vehicle, rotational_drag=(1e-3, 2e-3, 3e-3)), 'mujoco', ARMS)
+    vehicle = replace(vehicle, effects={
+        **vehicle.effects, 'rotor_drag': {'coefficient': 0.4}, 'blade_flapping': {
+            'hub_coefficient': 0.02, 'rate_damping': 2e-3}})
+    found = export(vehicle, 'mujoco')
+    read = with_code(found, read_back(found, Source('a.xml', found.text), vehicle), vehicle)
+    assert_turns_alike(read, vehicle)
+
+
+@pytest.mark.parametrize('to', TARGETS)
+def test_just_the_places_and_the_torque_of_the_rotors_change(to):
+    source, vehicle = base(to)
+    found = export(replace(vehicle, effects={**vehicle.effects, 'inertia_mismatch': ARMS}), to,
+                   source)
+    read = again(source, found)
+    assert read.inertia == pytest.approx(vehicle.inertia, rel=1e-9)
+    for rotor, other in zip(vehicle.rotors, read.rotors, strict=True):
+        assert other.position == pytest.approx(np.array(rotor.position) * [1.3, 1.2, 1.0],
+                                               abs=1e-9)
+    assert read.torque_coefficient == pytest.approx(0.8 * vehicle.torque_coefficient)
+    assert read.thrust_coefficient == pytest.approx(vehicle.thrust_coefficient)
+    assert {change.source for change in found.changes} >= {'rotors, inertia_mismatch'}
+    assert any('Physics.DYN alone' in remark for remark in found.remarks) == (to == 'urdf')
+    for kept in ('<!--', 'sensor', 'camera', 'as weighed', '\r'):
+        assert found.text.count(kept) == source.text.count(kept), kept
+
+
+def exported(source, to, known=None, mismatch=ARMS, **more):
+    """Return what an Export of a file is read as, its vehicle with the factors, and the Export."""
+    vehicle = read_vehicle(source, known).vehicle
+    vehicle = replace(vehicle, effects={**vehicle.effects, 'inertia_mismatch': mismatch, **more})
+    found = export(vehicle, to, source)
+    return read_vehicle(replace(source, text=found.text), known).vehicle, vehicle, found
+
+
+POSED = "<pose relative_to='turned'>"
+FRAME = "\n<frame name='turned' attached_to='base_link'><pose>0 0 0 0 0 1.2</pose></frame>"
+
+
+def turned(text, angle=1.2):
+    """Return a model whose rotors stand in a frame that is turned, at the places they had."""
+    for x, y in sdf.ARMS:
+        a, b, _ = about((0, 0, 1), -angle) @ [x, y, 0.0]
+        text = text.replace(f'<pose>{x} {y} 0.06 0.0 0 0', f'{POSED}{a:.17g} {b:.17g} 0.06 0 0 0')
+    return text.replace("\n<link name='rotor_0'", FRAME + "\n<link name='rotor_0'", 1)
+
+
+def jointed(text):
+    """Return a model whose joints stand in the base, and whose rotors hang on these."""
+    for k, (x, y) in enumerate(sdf.ARMS):
+        pose = f'{x} {y} 0.06 0.0 0 0'
+        text = text.replace(f'<pose>{pose}', f"<pose relative_to='rotor_{k}_joint'>0 0 0 0 0 0")
+        text = text.replace(f"<joint name='rotor_{k}_joint' type='revolute'>",
+                            f"<joint name='rotor_{k}_joint' type='revolute'>"
+                            f"<pose relative_to='base_link'>{pose}</pose>")
+    return text
+
+
+def apart(text):
+    """Return a model whose joints stand in the base, beside the rotors."""
+    for k, (x, y) in enumerate(sdf.ARMS):
+        text = text.replace(f"<joint name='rotor_{k}_joint' type='revolute'>",
+                            f"<joint name='rotor_{k}_joint' type='revolute'>"
+                            f"<pose relative_to='base_link'>{x} {y} 0.06 0 0 0</pose>")
+    return text
+
+
+@pytest.mark.parametrize('made', [turned, jointed, apart])
+def test_rotors_of_gazebo_move_in_the_frames_that_they_hang_on(made):
+    text = made(sdf.WHOLE)
+    assert text != sdf.WHOLE
+    read, vehicle, found = exported(Source('model.sdf', text), 'gazebo')
+    assert_turns_alike(read, vehicle)
+    # A joint goes with its rotor.
+    count = {turned: 4, jointed: 4, apart: 8}[made]
+    places = {change.place.rpartition('[')[0] for change in found.changes
+              if change.source == 'rotors, inertia_mismatch'}
+    assert len(places) == count
+
+
+def test_rotors_of_gazebo_in_another_file_stay_and_that_is_said(tmp_path):
+    for name, text in (('frame', sdf.model(sdf.bodies(), name='frame')), ('quad', sdf.model(
+            "<include merge='true'><uri>model://frame</uri></include>", sdf.motors()))):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / 'model.sdf').write_text(text)
+    path = tmp_path / 'quad' / 'model.sdf'
+    _, _, found = exported(Source(str(path), path.read_text()), 'gazebo')
+    [fate] = [fate for fate in found.fates.nearest if fate.name == 'inertia_mismatch']
+    assert fate.reason.startswith('the factors on its torque alone: the rotors stand in ')
+
+
+def test_controls_of_mujoco_that_are_moments_have_the_factors():
+    """Of thrusts with a torque apart that of the torque, of moments about all axes each."""
+    known = {'torque_over_thrust': 0.02, 'spins': list(mjcf.SIGNS)}
+    read, vehicle, found = exported(Source('quad.xml', mjcf.model(actuators=mjcf.APART)), 'mujoco',
+                                    known)
+    assert found.text.count('gear="0 0 0 0 0 0.8"') == 4
+    assert [rotor.position[:2] for rotor in read.rotors] == [
+        pytest.approx((1.3 * x, 1.2 * y)) for x, y in mjcf.ARMS]
+    total = ('<actuator><motor name="all" site="thrust0" gear="0 0 1 0 0 0"/>'
+             '<motor name="roll" site="thrust0" gear="0 0 0 1"/>'
+             '<motor name="none" site="thrust0" gear="0 0 0 0 0 0"/>'
+             '<motor name="both" site="turned" gear="0 0 0 1 1"/>'
+             '<motor name="yaw" site="turned" gear="0 0 0 1 0 1"/></actuator>')
+    body = mjcf.INERTIAL + '<site name="turned" euler="0 0 90"/>'
+    found = export(replace(vehicle, motors=None), 'mujoco',
+                   Source('quad.xml', mjcf.model(body, total)))
+    assert 'gear="0 0 0 1.2"' in found.text
+    # About x of its site, which is y of the body.
+    assert 'gear="0 0 0 1.3 0 0.8"' in found.text and 'gear="0 0 0 1.3 1.2"' in found.text
+    assert found.text.count('pos="-0.14 -0.18 0.05"') == 1
+    assert [fate.name for fate in found.fates.nearest] == ['inertia_mismatch']
+
+
+def test_a_rotor_of_mujoco_that_turns_moves_with_its_body():
+    """A site beside the axis that it turns about would go round."""
+    hub = '<inertial pos="0 0 0" mass="0.01" diaginertia="2e-6 2e-6 3e-6"/>'
+    rotors = ''.join(
+        f'<body pos="{x} {y} 0.05" euler="0 0 40"><joint axis="0 0 1"/>{hub}'
+        f'<site name="thrust{k}"/></body>' for k, (x, y) in enumerate(mjcf.ARMS))
+    text = mjcf.model().replace(mjcf.SITES, rotors)
+    read, vehicle, found = exported(Source('quad.xml', text), 'mujoco')
+    assert_turns_alike(read, vehicle)
+    assert found.text.count('<site name="thrust0"/>') == 1
+    lined = mjcf.model().replace('pos="-0.14 -0.18 0.05"', 'fromto="-0.14 -0.18 0.1 -0.14 -0.18 0"'
+                                 ' type="capsule" size="0.01"')
+    _, _, found = exported(Source('quad.xml', lined), 'mujoco', mismatch={'arms_x': 1.1})
+    [fate] = [fate for fate in found.fates.not_carried if fate.name == 'inertia_mismatch']
+    assert fate.reason.endswith('stands between two points')
+
+
+def test_a_site_of_mujoco_moves_in_the_frame_around_it():
+    text = mjcf.model()
+    for x, y in mjcf.ARMS:
+        text = text.replace(f'pos="{x} {y} 0.05"/>', f'pos="{y} {-x} 0.05" euler="0 0 10"/>')
+    text = text.replace(mjcf.INERTIAL, mjcf.INERTIAL + '<frame euler="0 0 90">').replace(
+        '\n</body>', '</frame>\n</body>')
+    read, vehicle, _ = exported(Source('quad.xml', text), 'mujoco')
+    assert_turns_alike(read, vehicle)
+
+
+def test_a_urdf_without_motors_has_the_arms_alone_and_one_without_rotors_none():
+    known = {'thrust_coefficient': 8e-6, 'torque_coefficient': 1.6e-7, 'speed_max': 1000.0,
+             'spins': [-1, -1, 1, 1]}
+    source = Source('drone.urdf', urdf.drone())
+    read, vehicle, found = exported(source, 'urdf', known)
+    # A rotor of 10 g moves, and the base makes up for it.
+    assert_turns_alike(replace(read, torque_coefficient=0.8 * read.torque_coefficient), vehicle)
+    [fate] = [fate for fate in found.fates.nearest if fate.name == 'inertia_mismatch']
+    assert fate.reason.startswith('the factors on its arms alone: a URDF says nothing of')
+    bare = export(vehicle, 'urdf', Source('drone.urdf', urdf.BASE + '</robot>'))
+    [fate] = [fate for fate in bare.fates.not_carried if fate.name == 'inertia_mismatch']
+    assert 'torque' in fate.reason
+
+
+def test_places_that_are_not_written_out_stay_and_that_is_said():
+    source, _ = base('rotorpy')
+    begin, end = source.text.index("{'r1'"), source.text.index("    'rotor_directions'")
+    text = (source.text[:begin] + 'places,\n' + source.text[end:]).replace(
+        'quad_params', f'places = {source.text[begin:end].strip().rstrip(",")}\nquad_params', 1)
+    _, _, found = exported(replace(source, text=text), 'rotorpy')
+    [fate] = [fate for fate in found.fates.nearest if fate.name == 'inertia_mismatch']
+    assert fate.reason.startswith('the factors on its torque alone: rotor_pos is not written')
