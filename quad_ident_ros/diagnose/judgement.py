@@ -144,7 +144,7 @@ def _weight(model: Model, without: Model, before: dict, noise: dict, distance: f
     """Return the Weight of what a Model has more than another, so far from no effect."""
     shares = lost_shares(model.gap, without.gap, before, noise, rules)
     explained = {name: explained_share(model.gap[name], without.gap[name], noise[name],
-                                        rules.least(name, noise[name])) for name in shares}
+                                       rules.least(name, noise[name])) for name in shares}
     # Where it does most: a small share of one group may be all that is explained in another.
     name = max(shares, key=lambda group: shares[group] * explained[group])
     return Weight(max(shares.values()), stability(model.ends, without.ends, noise, rules),

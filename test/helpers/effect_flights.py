@@ -72,7 +72,7 @@ def roll(vehicle, effects, course, start):
 
 
 def accelerations(vehicle, start, speeds):
-    """Return the accelerations (6,), world and body, m/s^2 and rad/s^2, at rotor speeds (1, n)."""
+    """Return how velocity and rate change, (6,) m/s^2 and rad/s^2, at rotor speeds (1, n)."""
     out = np.empty((1, 13))
     derivatives(vehicle_vector(vehicle)[:, None], rotor_table(vehicle),
                 vector(vehicle.effects, vehicle), np.zeros(1), start[None], speeds,

@@ -92,8 +92,8 @@ UNITS = {'as they are': {}, 'deg/s': {'gyro': 180 / np.pi}, 'mm': {'pos': 1e3, '
 @pytest.mark.parametrize('units', UNITS.values(), ids=UNITS)
 @pytest.mark.parametrize('groups', [(), (W, A), (V, W, A)], ids=['all', 'no imu', 'a pose'])
 @pytest.mark.parametrize('unit, seconds', [('min', 60.0), ('h', 3600.0)])
-def test_a_table_in_minutes_is_refused_in_any_unit_of_the_others(tmp_path, units, groups, unit,
-                                                                seconds):
+def test_a_table_in_minutes_is_refused_in_any_unit_of_the_others(
+        tmp_path, units, groups, unit, seconds):
     record = flight(rate=50.0)
     found = {name: values * units.get(name.partition('_')[0], 1.0) for name, values in
              columns(record, record.t, *groups, name='time').items()}
