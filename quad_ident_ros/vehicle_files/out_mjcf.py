@@ -25,7 +25,7 @@ from quad_ident_ros.vehicle_files.mujoco_code import Rotors
 from quad_ident_ros.vehicle_files.new_mjcf import new
 from quad_ident_ros.vehicle_files.out_base import Base
 from quad_ident_ros.vehicle_files.out_body import body_for, MOMENTS, PRODUCTS
-from quad_ident_ros.vehicle_files.out_places import lack_part
+from quad_ident_ros.vehicle_files.out_places import beside_others, lack_part
 from quad_ident_ros.vehicle_files.reading import Draft
 from quad_ident_ros.vehicle_files.source import Source
 from quad_ident_ros.vehicle_files.target import Code, Target
@@ -102,21 +102,43 @@ def _moving(edited: EditedXml, base: Base, model: Model, parts: Sequence[Part],
     """
     Return elements that move with the rotors, their positions and shifts (3,), m, around them.
 
-    It is the site of a rotor, or its body where that turns: a site beside the axis would turn.
+    It is the site of a rotor, or the body around it that turns: a site beside the axis would turn.
+    Rotors that stand apart on one such body, as on a frame that tilts, move by their sites.
     """
     if not base.shifts.any():
         return []
+    turning = {(part.element.path, part.element.start): (part, _sites_in(part.element))
+               for part in parts[1:] if part.joints}
+    shifts = {push.site: shift for push, shift in zip(thrusts, base.shifts, strict=True)}
+    nearest = {site: [key for key, (_, within) in turning.items() if site in within][-1:]
+               for site in shifts}      # a body comes after those around it
+    sites = _sites(parts)
     found: dict[tuple[str, int], tuple[Element, np.ndarray, np.ndarray]] = {}
-    for push, shift in zip(thrusts, base.shifts, strict=True):
-        part = next(part for part in parts if push.site in part.sites)
-        turns = part is not parts[0] and bool(part.joints)
-        frame, one = (part.pose, part.element) if turns else part.sites[push.site]
+    moves: dict[tuple[str, int], np.ndarray] = {}
+    above: dict[tuple[str, int], tuple[str, int]] = {}
+    for site, shift in shifts.items():
+        around = [key for key, (_, within) in turning.items() if site in within]
+        alike = all(np.array_equal(shift, shifts[other]) for other in shifts
+                    if nearest[other] == nearest[site])
+        frame, one = sites[site]
+        key = one.path, one.start
+        if around and alike:
+            key = around.pop()
+            frame, one = turning[key][0].pose, turning[key][0].element
         if 'fromto' in one.attributes:
             lack_part(edited, base.wanted, 'arms', f'{one.place()} stands between two points')
             return []
-        axes = frame.rotation @ model.rotation_of(one).T
-        found[one.path, one.start] = one, model.pose_of(one).position, axes.T @ shift
-    return list(found.values())
+        for inner, outer in zip([key, *reversed(around)], reversed(around), strict=False):
+            above[inner] = outer
+        found[key] = one, model.pose_of(one).position, frame.rotation @ model.rotation_of(one).T
+        moves[key] = shift
+    return [(one, position, axes.T @ beside) for (one, position, axes), beside in
+            zip(found.values(), beside_others(moves, above).values(), strict=True)]
+
+
+def _sites_in(body: Element) -> set[str]:
+    """Return the names of the sites in a <body> and in those in it."""
+    return {one.get('name') for one in body.walk() if one.tag == 'site'}
 
 
 def code(vehicle: Vehicle, base: Base, name: str) -> Code | None:

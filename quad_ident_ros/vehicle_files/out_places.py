@@ -4,8 +4,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Literal, TypeAlias
+from collections.abc import Hashable, Mapping
+from typing import Literal, TypeAlias, TypeVar
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from quad_ident_ros.vehicle_files.edits import Edits
 from quad_ident_ros.vehicle_files.wanted import Wanted
 
 Part: TypeAlias = Literal['arms', 'torque']
+Name = TypeVar('Name', bound=Hashable)
 
 
 def lack_part(edited: Edits, wanted: Wanted, part: Part, reason: str) -> None:
@@ -25,8 +26,8 @@ def lack_part(edited: Edits, wanted: Wanted, part: Part, reason: str) -> None:
         edited.lack(['moments'], reason)
 
 
-def beside_others(shifts: Mapping[str, np.ndarray], above: Mapping[str, str]
-                  ) -> dict[str, np.ndarray]:
+def beside_others(shifts: Mapping[Name, np.ndarray], above: Mapping[Name, Name]
+                  ) -> dict[Name, np.ndarray]:
     """Return how far frames move in those that they hang on, some of which move themselves."""
     found = {}
     for name, shift in shifts.items():

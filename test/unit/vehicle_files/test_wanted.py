@@ -3,6 +3,7 @@
 """A file of another simulator turns as the vehicle does whose rotors' moments are off."""
 
 from dataclasses import replace
+import re
 
 from effect_flights import accelerations, state
 from exported import again, base
@@ -23,6 +24,7 @@ from quad_ident_ros.vehicle_files.written import read_back, with_code
 ARMS = {'arms_x': 1.3, 'arms_y': 1.2, 'torque': 0.8}
 MISMATCHES = {'moments': ARMS, 'moments_and_inertia': {
     'moment_x': 1.3, 'moment_y': 0.8, 'moment_z': 1.1, 'inertia_y': 1.2, 'inertia_z': 0.9}}
+ROTORS = 'rotors, inertia_mismatch'
 # What turns the vehicle besides its rotors' arms, where files have it.
 TURNING = {'centre': ('com_offset', {'x': 0.04, 'y': -0.03, 'z': 0.05}),
            'flapping': ('blade_flapping', {'coefficient': 0.01})}
@@ -89,7 +91,7 @@ def test_just_the_places_and_the_torque_of_the_rotors_change(to):
                                                abs=1e-9)
     assert read.torque_coefficient == pytest.approx(0.8 * vehicle.torque_coefficient)
     assert read.thrust_coefficient == pytest.approx(vehicle.thrust_coefficient)
-    assert {change.source for change in found.changes} >= {'rotors, inertia_mismatch'}
+    assert {change.source for change in found.changes} >= {ROTORS}
     assert any('Physics.DYN alone' in remark for remark in found.remarks) == (to == 'urdf')
     for kept in ('<!--', 'sensor', 'camera', 'as weighed', '\r'):
         assert found.text.count(kept) == source.text.count(kept), kept
@@ -144,7 +146,7 @@ def test_rotors_of_gazebo_move_in_the_frames_that_they_hang_on(made):
     # A joint goes with its rotor.
     count = {turned: 4, jointed: 4, apart: 8}[made]
     places = {change.place.rpartition('[')[0] for change in found.changes
-              if change.source == 'rotors, inertia_mismatch'}
+              if change.source == ROTORS}
     assert len(places) == count
 
 
@@ -197,6 +199,36 @@ def test_a_rotor_of_mujoco_that_turns_moves_with_its_body():
     _, _, found = exported(Source('quad.xml', lined), 'mujoco', mismatch={'arms_x': 1.1})
     [fate] = [fate for fate in found.fates.not_carried if fate.name == 'inertia_mismatch']
     assert fate.reason.endswith('stands between two points')
+
+
+HUB = '<inertial pos="0 0 0" mass="0.01" diaginertia="2e-6 2e-6 3e-6"/>'
+TURNS = '<joint axis="0 0 1"/>' + HUB
+APART = '<body pos="0 0 0.05"><joint axis="0 1 0"/>' + HUB + ''.join(
+    f'<site name="thrust{k}" pos="{x} {y} 0"/>' for k, (x, y) in enumerate(mjcf.ARMS)) + '</body>'
+CHILD = ''.join(
+    f'<body pos="{x} {y} 0.05">{TURNS}<body pos="0 0 0.01"><site name="thrust{k}"/></body></body>'
+    for k, (x, y) in enumerate(mjcf.ARMS))
+WITHIN = ''.join(
+    f'<body pos="{x} {y} 0.05" euler="0 0 40">{TURNS}<site name="thrust{k}"/>'
+    f'<body pos="0 0 0.1" euler="0 0 9">{TURNS}<site name="thrust{k + 4}"/></body></body>'
+    for k, (x, y) in enumerate(mjcf.ARMS))
+OF_EIGHT = mjcf.motors().replace('</actuator>', '') + re.sub(
+    r'thrust(\d)', lambda found: f'thrust{int(found[1]) + 4}', mjcf.motors()).replace(
+        'name="m', 'name="n').replace('<actuator>', '')
+
+
+@pytest.mark.parametrize(('rotors', 'actuators', 'sites', 'bodies'), [
+    (APART, None, 4, 0), (CHILD, None, 0, 4), (WITHIN, OF_EIGHT, 0, 4)],
+    ids=['apart on one that tilts', 'in a child of one that turns', 'one within another'])
+def test_rotors_of_mujoco_move_with_the_bodies_that_turn_for_each_alone(rotors, actuators, sites,
+                                                                        bodies):
+    """On a frame that tilts they stand apart; what a rotor that turns carries is moved with it."""
+    text = mjcf.model(actuators=actuators).replace(mjcf.SITES, rotors)
+    read, vehicle, found = exported(Source('quad.xml', text), 'mujoco')
+    assert_turns_alike(read, vehicle)
+    moved = [change.place for change in found.changes if change.source == ROTORS]
+    assert [sum(tag in place and place.endswith('pos[0]') for place in moved)
+            for tag in ('<site', '<body')] == [sites, bodies]
 
 
 def test_a_site_of_mujoco_moves_in_the_frame_around_it():
