@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -49,19 +50,36 @@ def body_for(base: Base, edited: Edits, where: str, main: Body, rest: Sequence[B
         raise InputError(f'{where}: the other bodies weigh {mass - left:.6g} kg, the whole '
                          f'vehicle is to weigh {mass:.6g} kg; correct their masses')
     aim = Body(mass, whole.centre + wanted.centre, whole.inertia + moved)
-    if not moved.any():     # an inertia of the file itself stays, whatever it is
-        body = remainder(aim, rest)
-        check_body(f'{where}: as the vehicle has it{said}', body)
-        return body
-    body = remainder(nearest_body(aim), rest)
+    # An inertia of the file itself stays, whatever it is.
+    body = remainder(nearest_body(aim) if moved.any() else aim, rest)
     check_body(f'{where}: as the vehicle has it{said}', body)
-    body = nearest_body(body)
-    _say_off(edited, aim, combined([body, *rest]))
-    moved = body.inertia - main.inertia
-    if (not differs(main.mass, body.mass) and np.max(np.abs(body.centre - main.centre)) <= SAME
-            and np.max(np.abs(moved)) <= SAME * size):
-        return main
-    return body
+    if moved.any():
+        body = nearest_body(body)
+        _say_off(edited, aim, combined([body, *rest]))
+    off = float(np.max(np.abs(body.inertia - main.inertia)))
+    same = (not differs(main.mass, body.mass) and off <= SAME * size
+            and np.max(np.abs(body.centre - main.centre)) <= SAME)
+    return main if same else body
+
+
+def told_by_body(base: Base, rest: Sequence[Body], shifted: Sequence[Body] | None) -> Base:
+    """
+    Return a Base whose sources name all that moves the body of body_for, which has its arguments.
+
+    It makes up for the other bodies: its place and its inertia change with the mass of all of
+    them, with their centre of mass and with rotors that move.
+    """
+    wanted, sources = base.wanted, base.wanted.sources
+    mass = ['mass'] * bool(rest and differs(base.mass, wanted.mass))
+    centre = ['centre'] * bool(wanted.centre.any())
+    moments = ['moments'] * (shifted is not None)
+    size = float(np.max(np.abs(base.inertia)))
+    inertia = ['inertia'] * bool(np.max(np.abs(wanted.inertia - base.inertia)) > SAME * size)
+    told = {'centre': [*centre, *mass, *moments],
+            'inertia': [*inertia, *(mass + centre + moments if rest else ())]}
+    named = {key: ', '.join(dict.fromkeys(', '.join(sources[each] for each in keys).split(', ')))
+             for key, keys in told.items() if keys}
+    return replace(base, wanted=replace(wanted, sources={**sources, **named}))
 
 
 def inertia_for(base: Base, edited: Edits, where: str) -> np.ndarray:

@@ -24,7 +24,7 @@ from quad_ident_ros.vehicle_files.mujoco_code import code as program
 from quad_ident_ros.vehicle_files.mujoco_code import Rotors
 from quad_ident_ros.vehicle_files.new_mjcf import new
 from quad_ident_ros.vehicle_files.out_base import Base
-from quad_ident_ros.vehicle_files.out_body import body_for, MOMENTS, PRODUCTS
+from quad_ident_ros.vehicle_files.out_body import body_for, MOMENTS, PRODUCTS, told_by_body
 from quad_ident_ros.vehicle_files.out_places import beside_others, lack_part
 from quad_ident_ros.vehicle_files.reading import Draft
 from quad_ident_ros.vehicle_files.source import Source
@@ -62,8 +62,8 @@ def write(base: Base) -> EditedXml:
         there = replace(base.source, text=edited.result())
         shifted = _layout(there, model_of(parsed(there)))[2]
         del shifted[main]
-    body = body_for(base, edited, parts[main].element.where, bodies[main],
-                    [*bodies[:main], *bodies[main + 1:]], shifted)
+    rest = [*bodies[:main], *bodies[main + 1:]]
+    body = body_for(base, edited, parts[main].element.where, bodies[main], rest, shifted)
     if body is not bodies[main]:
         if 'settotalmass' in model.compiler:
             raise InputError(f'{base.source.path}: settotalmass of <compiler> scales every mass; '
@@ -74,7 +74,7 @@ def write(base: Base) -> EditedXml:
                 kept.inertia, inside.inertia, rtol=0.0, atol=SAME * np.max(inside.inertia)):
             raise InputError(f'{base.source.path}: boundmass, boundinertia or balanceinertia of '
                              '<compiler> changes the mass or inertia of the vehicle; take it out')
-        _write_body(edited, base, model, parts[main], inside)
+        _write_body(edited, told_by_body(base, rest, shifted), model, parts[main], inside)
         edited.say_several(parts[main].element, len(bodies))
     edited.lack(['speed_max'], 'a command is a thrust here, and speeds are not of the file')
     _write_thrusts(edited, base, thrusts)

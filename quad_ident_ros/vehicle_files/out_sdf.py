@@ -8,7 +8,7 @@ from quad_ident_ros.vehicle_files.bodies import Body
 from quad_ident_ros.vehicle_files.edit_xml import EditedXml
 from quad_ident_ros.vehicle_files.new_sdf import new
 from quad_ident_ros.vehicle_files.out_base import Base
-from quad_ident_ros.vehicle_files.out_body import body_for, ENTRIES, MOMENTS
+from quad_ident_ros.vehicle_files.out_body import body_for, ENTRIES, MOMENTS, told_by_body
 from quad_ident_ros.vehicle_files.out_motors import HOLDS, write_motors
 from quad_ident_ros.vehicle_files.out_places import beside_others, lack_part
 from quad_ident_ros.vehicle_files.reading import Draft
@@ -36,7 +36,7 @@ def write(base: Base) -> EditedXml:
         edited.lack(BODY, f'it stands in {link.path}; give the whole model as `gz sdf -p` prints '
                     'it')
     elif body is not main:
-        _write_body(edited, base, link, body)
+        _write_body(edited, told_by_body(base, rest, shifted), link, body)
         edited.say_several(link, len(layout.bodies))
     plugins = [plugin for plugin, _ in layout.plugins]
     if any(plugin.element.path != path for plugin in plugins):

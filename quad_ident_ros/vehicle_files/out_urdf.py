@@ -11,7 +11,7 @@ from quad_ident_ros.vehicle_files.bodies import Body, nearest_common
 from quad_ident_ros.vehicle_files.edit_xml import EditedXml
 from quad_ident_ros.vehicle_files.new_urdf import new
 from quad_ident_ros.vehicle_files.out_base import Base
-from quad_ident_ros.vehicle_files.out_body import body_for, ENTRIES
+from quad_ident_ros.vehicle_files.out_body import body_for, ENTRIES, told_by_body
 from quad_ident_ros.vehicle_files.out_motors import HOLDS, write_motors
 from quad_ident_ros.vehicle_files.out_places import beside_others, lack_part
 from quad_ident_ros.vehicle_files.reading import Draft
@@ -46,7 +46,8 @@ def write(base: Base) -> EditedXml:
         shifted = [body for other, body in moved.items() if other != name]
     body = body_for(base, edited, links[name].element.where, bodies[name], rest, shifted)
     if body is not bodies[name]:
-        _write_body(edited, base, links[name], body.placed(links[name].pose.inverse))
+        _write_body(edited, told_by_body(base, rest, shifted), links[name],
+                    body.placed(links[name].pose.inverse))
         edited.say_several(links[name].element, len(bodies))
     plugins, properties = plugins_of(root), root.first('properties')
     if plugins:

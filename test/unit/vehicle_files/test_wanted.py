@@ -143,10 +143,9 @@ def test_rotors_of_gazebo_move_in_the_frames_that_they_hang_on(made):
     assert text != sdf.WHOLE
     read, vehicle, found = exported(Source('model.sdf', text), 'gazebo')
     assert_turns_alike(read, vehicle)
-    # A joint goes with its rotor.
+    # A joint goes with its rotor; the base makes up for their mass.
     count = {turned: 4, jointed: 4, apart: 8}[made]
-    places = {change.place.rpartition('[')[0] for change in found.changes
-              if change.source == ROTORS}
+    places = {change.place for change in found.changes if change.place.endswith('<pose>[1]')}
     assert len(places) == count
 
 
@@ -239,6 +238,33 @@ def test_a_site_of_mujoco_moves_in_the_frame_around_it():
         '\n</body>', '</frame>\n</body>')
     read, vehicle, _ = exported(Source('quad.xml', text), 'mujoco')
     assert_turns_alike(read, vehicle)
+
+
+@pytest.mark.parametrize(('body', 'before'), [
+    ('<geom type="box" size="0.1 0.1 0.05" mass="1.2"/>', '<compiler autolimits="true"/>'),
+    (mjcf.INERTIAL, '<compiler autolimits="true" settotalmass="2"/>')])
+def test_sites_without_a_mass_move_and_no_inertia_is_written(body, before):
+    """None that repeats that of the shapes, and none that the compiler would scale again."""
+    text = mjcf.model(body=body, before=before)
+    read, vehicle, found = exported(Source('quad.xml', text), 'mujoco')
+    assert_turns_alike(read, vehicle)
+    assert found.text.count('<inertial') == text.count('<inertial')
+    assert len(found.changes) == 4 * 2 + 4
+    assert all(change.old != change.new for change in found.changes)
+
+
+@pytest.mark.parametrize(('effect', 'values', 'source'), [
+    ('inertia_mismatch', ARMS, ROTORS), ('mass_offset', {'mass': 0.3}, 'mass, mass_offset'),
+    ('com_offset', {'x': 0.01}, 'com_offset')])
+def test_a_body_that_makes_up_for_others_names_what_moves_it(effect, values, source):
+    """Its inertia is another where that of the whole is as it was."""
+    base_file, vehicle = base('gazebo')
+    found = export(replace(vehicle, effects={**vehicle.effects, effect: values}), 'gazebo',
+                   base_file)
+    moments = [change.source for change in found.changes if '<i' in change.place]
+    assert len(moments) >= 3 and set(moments) == {source}
+    assert [change.source for change in found.changes if change.place == 'line 7: <pose>[0]'] == [
+        source]
 
 
 def test_a_urdf_without_motors_has_the_arms_alone_and_one_without_rotors_none():
