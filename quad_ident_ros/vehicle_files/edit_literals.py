@@ -61,12 +61,18 @@ class EditedTable(Edits):
         old = list(old.values()) if isinstance(old, dict) else old
         for k, (value, before, after) in enumerate(zip(inside, old, new, strict=True)):
             place = f'line {value.lineno}: {key}[{k}]'
-            if any(self.enter(place, list(map(float, before)), after, unit, source, 1.0)):
-                array = next((ast.unparse(each.func) for each in ast.walk(value)
-                              if isinstance(each, ast.Call)
-                              and ast.unparse(each.func).endswith('array')), '')
+            moved = self.enter(place, list(map(float, before)), after, unit, source, 1.0)
+            array = next((each for each in ast.walk(value) if isinstance(each, ast.Call)
+                          and ast.unparse(each.func).endswith('array')), None)
+            plain = array.args[0] if array is not None and array is value else value
+            if isinstance(plain, ast.List | ast.Tuple):
+                for number, new_one, changed in zip(plain.elts, after, moved, strict=True):
+                    if changed:
+                        self.replace(*self._span(number), shown([new_one]))
+            elif any(moved):    # a product, as of an arm and a direction
                 text = '[' + ', '.join(shown([each]) for each in after) + ']'
-                self.replace(*self._span(value), f'{array}({text})' if array else text)
+                name = ast.unparse(array.func) if array else ''
+                self.replace(*self._span(value), f'{name}({text})' if name else text)
         return True
 
     def _span(self, node: ast.expr | ast.keyword) -> tuple[int, int]:

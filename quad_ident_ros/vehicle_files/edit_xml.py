@@ -81,6 +81,9 @@ class EditedXml(Edits):
             self.child(parent, f'<{tag}>{shown(new)}</{tag}>')
         else:
             begin, end = self._run_of_text(child)
+            if len(self.data[begin:end].split()) < len(words):
+                raise InputError(f'{child.where}: a comment stands between its numbers; put it '
+                                 'before them or behind')
             self._replace(child, begin, end, words, new, whole)
 
     def child(self, parent: Element, text: str) -> None:

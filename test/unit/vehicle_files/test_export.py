@@ -434,6 +434,17 @@ def test_what_other_bodies_weigh_is_not_undercut():
         export(replace(vehicle, rotors=vehicle.rotors[:3]), 'gazebo', source)
 
 
+def test_a_comment_between_numbers_is_not_written_over():
+    source, vehicle = base('gazebo')
+    text = source.text.replace('<pose>0.2 -0.25 0.06', '<pose>0.2 -0.25 <!-- m --> 0.06')
+    moved = replace(vehicle, effects={**vehicle.effects, 'inertia_mismatch': {'arms_y': 1.1}})
+    with pytest.raises(InputError, match='line 14: <pose>: a comment stands between its numbers'):
+        export(moved, 'gazebo', replace(source, text=text))
+    for other in (text.replace('<!-- m --> 0.06 0.0 0 0', '0.06 0.0 0 0 <!-- m -->'),
+                  text.replace('0.2 -0.25 <!-- m -->', '<!-- m --> 0.2 -0.25')):
+        assert export(moved, 'gazebo', replace(source, text=other)).text.count('<!-- m -->') == 1
+
+
 def test_what_stands_in_an_included_file_stays_and_is_said(tmp_path):
     for name, text in (('frame', sdf.model(sdf.bodies(), name='frame')), ('quad', sdf.model(
             "<include merge='true'><uri>model://frame</uri></include>", sdf.motors()))):

@@ -76,6 +76,22 @@ def test_a_centre_of_mass_moves_the_rotors_of_rotorpy():
                                    atol=1e-12)
 
 
+def test_of_the_place_of_a_rotor_just_the_numbers_that_change_are_written():
+    """What stands beside them stays: a height that does not change, a remark, spaces."""
+    source, vehicle = base('rotorpy')
+    first, third = 'arm*np.array([1, 1, 0.1])', '[-arm, -arm, 0.1 * arm]'
+    text = source.text.replace(first, 'np.array([ arm, # m\n arm, 0.10 * arm ])')
+    assert first in source.text and third in text
+    file = replace(source, text=text)
+    found = export(with_effects(vehicle, inertia_mismatch={'arms_x': 1.1}), 'rotorpy', file)
+    for kept in ("'r1': np.array([ 0.15556", ', # m\n arm, 0.10 * arm ])', "'r3': [-0.15556",
+                 ', -arm, 0.1 * arm]'):
+        assert kept in found.text, kept
+    assert [change.place[-3:] for change in found.changes] == ['[0]'] * 4
+    assert again(file, found).rotors[2].position == pytest.approx(
+        np.array(vehicle.rotors[2].position) * [1.1, 1.0, 1.0])
+
+
 def test_a_dictionary_that_is_not_written_out_is_refused_in_one_line():
     source, vehicle = base('rotorpy')
     text = source.text.replace('quad_params', 'values') + 'quad_params = values\n'
