@@ -191,8 +191,8 @@ def _constants(vehicle: Vehicle, base: Base, target: Target, edits: Edits) -> li
             or rotor.get('spin', other.spin) != other.spin
             for rotor, other in zip(data['rotors'], vehicle.rotors, strict=True)):
         found.append(Fate('rotors', '', lacking.get(
-            'rotors', 'places and spins of rotors are not changed; give the file that the vehicle '
-            'was read from')))
+            'rotors', 'those of the file stay, with factors on their moments alone; give the file '
+            'that the vehicle was read from')))
     return found
 
 

@@ -122,7 +122,8 @@ def test_yourdfpy_reads_what_is_written_as_urdf(with_base):
     shift = 0.1 * vehicle.arm_length * np.array([1.0, -0.5, 0.2])
     vehicle = replace(vehicle, mass=1.1 * vehicle.mass, inertia=(x, y, z),
                       products=(0.02 * x, -0.03 * x, 0.01 * x),
-                      effects={'com_offset': dict(zip('xyz', shift.tolist(), strict=True))})
+                      effects={'com_offset': dict(zip('xyz', shift.tolist(), strict=True)),
+                               'inertia_mismatch': {'arms_x': 1.3, 'arms_y': 1.2}})
     robot = yourdfpy.URDF.load(io.StringIO(export(vehicle, 'urdf', source).text),
                                load_meshes=False, build_scene_graph=True)
     assert with_base or robot.validate()    # properties are none of the format's own elements
@@ -143,4 +144,5 @@ def test_yourdfpy_reads_what_is_written_as_urdf(with_base):
     np.testing.assert_allclose(inertia, vehicle.inertia_matrix, atol=1e-9 * z)
     hub = 'prop{}_link' if with_base else 'rotor_{}'
     for k, rotor in enumerate(vehicle.rotors):
-        np.testing.assert_allclose(hubs[hub.format(k)] - centre, rotor.position - shift, atol=1e-9)
+        np.testing.assert_allclose(hubs[hub.format(k)] - centre,
+                                   rotor.position * np.array([1.3, 1.2, 1.0]) - shift, atol=1e-9)

@@ -156,12 +156,14 @@ def test_what_is_written_is_what_libsdformat_reads(tmp_path, program, with_base,
     source = Source('model.sdf', model(bodies(), motors()))
     vehicle = read_vehicle(source).vehicle
     x, y, z = vehicle.inertia
+    arms, torque = ([1.0, 1.0, 1.0], 1.0) if flat else ([1.3, 1.2, 1.0], 0.8)
     vehicle = replace(
         vehicle, mass=1.7, inertia=(x, y, 1.1 * (x + y) if flat else 1.02 * z),
         products=(1e-4, -2e-4, 3e-4), thrust_coefficient=9e-6, torque_coefficient=2e-7,
         speed_max=900.0, effects={
             'motor_lag': {'rise': 0.02, 'fall': 0.03}, 'rotor_drag': {'coefficient': 0.2},
-            'com_offset': {'x': 0.005, 'y': -0.003, 'z': 0.002}})
+            'com_offset': {'x': 0.005, 'y': -0.003, 'z': 0.002},
+            'inertia_mismatch': {'arms_x': arms[0], 'arms_y': arms[1], 'torque': torque}})
     found = export(vehicle, 'gazebo', source if with_base else None)
     path = tmp_path / 'quad' / 'model.sdf'
     path.parent.mkdir()
@@ -176,12 +178,13 @@ def test_what_is_written_is_what_libsdformat_reads(tmp_path, program, with_base,
         np.testing.assert_allclose(inertia, vehicle.inertia_matrix, atol=1e-11)
     for k, rotor in enumerate(vehicle.rotors):
         np.testing.assert_allclose(links[f'rotor_{k}'][1] - centre,
-                                   np.subtract(rotor.position, [0.005, -0.003, 0.002]), atol=1e-9)
+                                   arms * np.array(rotor.position) - [0.005, -0.003, 0.002],
+                                   atol=1e-9)
     plugins = [dict(zip(row[1::2], row[2::2], strict=True)) for row in rows if row[0] == 'plugin']
     drag = 0.2 / (4 * vehicle.hover_speed)
     for k, plugin in enumerate(plugins):
         assert plugin['linkName'] == f'rotor_{k}' and plugin['turningDirection'] == TURNS[k]
-        for tag, value in (('motorConstant', 9e-6), ('momentConstant', 2e-7 / 9e-6),
+        for tag, value in (('motorConstant', 9e-6), ('momentConstant', torque * 2e-7 / 9e-6),
                            ('maxRotVelocity', 900.0), ('timeConstantUp', 0.02),
                            ('timeConstantDown', 0.03), ('rotorDragCoefficient', drag)):
             assert float(plugin[tag]) == pytest.approx(value, rel=1e-9), tag
