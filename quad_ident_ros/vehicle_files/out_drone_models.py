@@ -76,13 +76,14 @@ class _EditedDrone(Edits):
 
 
 def _write_places(edited: _EditedDrone, base: Base, drone: Drone) -> None:
-    """Have the arm and the mixing matrix hold the places of the rotors."""
-    factors, source = base.wanted.arms[:2], base.wanted.sources['moments']
-    longest, mixing = float(np.max(factors)), drone.matrix('mixing_matrix', 3, ROTORS)
-    mixing[0] *= factors[1] / longest
-    mixing[1] *= factors[0] / longest
-    edited.key('L', [longest * drone.number('L')], 'm', source)
-    edited.key('mixing_matrix', mixing.ravel(), '1', source)
+    """
+    Have the rows of roll and pitch of the mixing matrix hold the places of the rotors.
+
+    The arm L, which both have in common, stays: else a factor on one would change the other.
+    """
+    mixing = drone.matrix('mixing_matrix', 3, ROTORS)
+    mixing[:2] *= base.wanted.arms[[1, 0], None]
+    edited.key('mixing_matrix', mixing.ravel(), '1', base.wanted.sources['moments'])
 
 
 def _write_curves(edited: _EditedDrone, base: Base, drone: Drone) -> np.ndarray:

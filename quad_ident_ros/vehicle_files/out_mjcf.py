@@ -53,7 +53,8 @@ def write(base: Base) -> EditedXml:
                                   *(one for one, _, _ in moving)) if one.beside), None)
     if other is not None:
         raise InputError(f'{base.source.path}: the vehicle stands in {other.path}, which it '
-                         'includes; give that file as --base')
+                         'includes; give that file as --base, or where it is a part of the '
+                         'model alone, the whole model as `mj_saveLastXML` writes it')
     shifted = None
     if moving:
         for one, before, shift in moving:

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.model.covariance import covariance_of_matrix
 from quad_ident_ros.model.vehicle import load_vehicle
 from quad_ident_ros.vehicle_files.export import export
 from quad_ident_ros.vehicle_files.load import read_vehicle
@@ -137,6 +138,25 @@ def test_a_factor_scales_the_curve_of_drone_models_and_the_lag_at_hover_stays():
 
 
 @TOML
+@pytest.mark.parametrize(('factors', 'rows'), [
+    ({'arms_y': 1.2}, {0}), ({'arms_x': 1.2}, {1}), ({'arms_x': 1.1, 'arms_y': 1.1}, {0, 1})])
+def test_a_factor_on_one_moment_is_that_of_one_row_of_drone_models(factors, rows):
+    """The arm is one for both rows: as their largest factor it had the errors of both."""
+    source, vehicle = base('crazyflow')
+    stds = {'arms_y': 0.02, 'arms_x': 0.01}
+    covariance = covariance_of_matrix(tuple(f'inertia_mismatch.{name}' for name in factors),
+                                      np.diag([stds[name] ** 2 for name in factors]))
+    found = export(replace(with_effects(vehicle, inertia_mismatch=factors),
+                           covariance=covariance), 'crazyflow', source)
+    told = {int(change.place.split('[')[1][:-1]): change.std for change in found.changes}
+    assert set(told) == {4 * row + k for row in rows for k in range(4)}
+    for place, std in told.items():
+        assert std == pytest.approx(stds['arms_x' if place // 4 else 'arms_y'])
+    for rotor, other in zip(vehicle.rotors, again(source, found).rotors, strict=True):
+        assert other.position == pytest.approx(np.array(rotor.position) * [
+            factors.get('arms_x', 1.0), factors.get('arms_y', 1.0), 1.0])
+
+
 def test_another_exponent_becomes_a_curve_with_its_slope_at_hover():
     source, vehicle = base('crazyflow')
     wanted = with_effects(vehicle, thrust_scale={'exponent': 1.9, 'hover_factor': 0.9})

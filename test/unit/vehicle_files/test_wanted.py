@@ -13,6 +13,7 @@ import test_vehicle_files_mjcf as mjcf
 import test_vehicle_files_sdf as sdf
 import test_vehicle_files_urdf as urdf
 
+from quad_ident_ros.errors import InputError
 from quad_ident_ros.vehicle_files.bodies import about
 from quad_ident_ros.vehicle_files.export import export
 from quad_ident_ros.vehicle_files.load import read_vehicle
@@ -265,6 +266,14 @@ def test_a_body_that_makes_up_for_others_names_what_moves_it(effect, values, sou
     assert len(moments) >= 3 and set(moments) == {source}
     assert [change.source for change in found.changes if change.place == 'line 7: <pose>[0]'] == [
         source]
+
+
+def test_sites_in_a_part_that_a_model_includes_are_refused_with_the_way_out(tmp_path):
+    """Such a part is no model, and cannot be the base."""
+    (tmp_path / 'sites.xml').write_text(f'<mujocoinclude>{mjcf.SITES}</mujocoinclude>')
+    text = mjcf.model().replace(mjcf.SITES, '<include file="sites.xml"/>')
+    with pytest.raises(InputError, match='sites.xml, which it includes; give .*mj_saveLastXML'):
+        exported(Source(str(tmp_path / 'quad.xml'), text), 'mujoco')
 
 
 def test_a_urdf_without_motors_has_the_arms_alone_and_one_without_rotors_none():
