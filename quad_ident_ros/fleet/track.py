@@ -56,7 +56,7 @@ def tracked_effects(effects: pyarrow.Table) -> dict[str, dict[str, str]]:
     groups name it in most often, or else the fleet. A single flight does not determine effects
     that look alike together: of these the one that most vehicles have is tracked, or else the one
     that is named more often. Both are where most vehicles have both, and verdicts name them
-    together.
+    together; and thrust is beside all but a mass.
     """
     named = effects.filter(pc.field('named'))
     counts = named.group_by(['vehicle', 'effect', 'form']).aggregate([([], 'count_all')])
@@ -103,7 +103,14 @@ def _without_alternatives(common: Forms, often: Mapping[str, int], named: pyarro
 
 
 def _alike(effect: str, other: str) -> bool:
-    """Return whether two effects look alike."""
+    """
+    Return whether two effects look alike in a single flight.
+
+    Thrust stands out of all but a mass, of which only the ratio shows: a flight within which the
+    battery sags, or of a vehicle with other inertia, tells both.
+    """
+    if effect in BY_FLIGHT or other in BY_FLIGHT:
+        return EFFECTS[effect].ratio is not None and EFFECTS[effect].ratio == EFFECTS[other].ratio
     return other in EFFECTS[effect].confused_with or effect in EFFECTS[other].confused_with
 
 

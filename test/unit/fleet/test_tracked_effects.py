@@ -11,6 +11,7 @@ from quad_ident_ros.data.thrust_level import FULL_SPEED
 from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.fleet.manifest import listed
 from quad_ident_ros.flight.fly import fly_closed_loop
+from quad_ident_ros.flight.measure import SENSORS
 from quad_ident_ros.model.vehicle import load_vehicle
 
 pytest.importorskip('pyarrow', reason="pyarrow is not installed: pip install '.[fleet]'")
@@ -78,6 +79,15 @@ def test_thrust_that_a_vehicle_does_not_name_has_the_form_of_the_fleet():
     assert found['c'] == {'thrust_scale': 'exponent', 'motor_lag': 'first_order'}
 
 
+@pytest.mark.parametrize('other', ['battery_sag', 'inertia_mismatch', 'inflow', 'ground_effect'])
+def test_thrust_is_tracked_beside_what_a_single_flight_tells_from_it(other):
+    """Else one verdict that names a battery which sags would hide a drift of the thrust."""
+    found = tracked(a=other, b=other, c='rotor_drag')
+    assert found['a'] == {other, 'thrust_scale'} and found['c'] == found['a'] | {'rotor_drag'}
+    usual = tracked(a='thrust_scale', b='thrust_scale', c=other)
+    assert usual['a'] == {'thrust_scale'} and usual['c'] == {other, 'thrust_scale'}
+
+
 @pytest.fixture
 def group(tmp_path):
     """Return a group of one flight, which is diagnosed and has drag in its verdict."""
@@ -121,6 +131,21 @@ def test_thrust_of_a_log_that_the_weight_scaled_takes_no_other_effect_with_it(
         rows = read_rows(tmp_path, 'parameters', tracking.key, ['effect', 'value'])
         assert [row['effect'] for row in rows] == [*effects][:-1]
         assert [row['value'] for row in rows] == pytest.approx([0.2] * len(rows), abs=0.02)
+
+
+@pytest.mark.slow
+def test_a_single_flight_tells_thrust_from_a_battery_that_sags(group, tmp_path, monkeypatch):
+    """Without the thrust the battery would lose 0.33 per volt."""
+    record = fly_closed_loop(
+        group.nominal, {'battery_sag': {'per_volt': 0.05}, 'thrust_scale': {'factor': 0.97}},
+        'lissajous', duration=10.0, seed=3, noise=SENSORS['mocap_imu'])
+    monkeypatch.setattr(track, 'load_all', lambda *_: [record])
+    tracking = Tracking(group, {'battery_sag': 'voltage', 'thrust_scale': 'factor'})
+    track.track(tracking, tmp_path)
+    found = {row['parameter']: row for row in read_rows(tmp_path, 'parameters', tracking.key)}
+    assert found['factor']['value'] == pytest.approx(0.97, abs=0.002)
+    assert found['factor']['std'] < 0.001
+    assert found['per_volt']['value'] == pytest.approx(0.05, abs=0.012)
 
 
 def test_flights_that_are_not_where_a_worker_looks_are_fitted_by_the_next_run(group, tmp_path):
