@@ -13,7 +13,7 @@ import pyarrow
 
 from quad_ident_ros import __version__
 from quad_ident_ros.effects.registry import EFFECTS
-from quad_ident_ros.fleet.events import Event, events
+from quad_ident_ros.fleet.events import Event, events, matters
 from quad_ident_ros.fleet.history import histories, History
 from quad_ident_ros.fleet.series import comparable, series_of
 from quad_ident_ros.fleet.sisters import Sister, Sisters, sisters
@@ -188,7 +188,7 @@ def _suspect(flights: Iterable[dict], found: Iterable[History]
 
 def _odd(beside: Iterable[Sisters], named: set[tuple[str, str]]) -> tuple[Odd, ...]:
     found = [Odd(one.configuration, one.effect, one.parameter, one.unit, one.mean, one.spread,
-                 len(one.vehicles) - 1, sister, (sister.vehicle, one.effect) in named)
+                 len(one.vehicles) - 1, sister, matters(sister.vehicle, one.effect, named))
              for one in beside for sister in one.odd]
     return tuple(sorted(found, key=lambda one: -abs(one.sister.spreads)))
 

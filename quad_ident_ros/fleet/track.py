@@ -47,6 +47,12 @@ class Tracking:
         return f'{self.group.key}-{hashlib.sha256(names.encode()).hexdigest()[:16]}'
 
 
+def is_by_flight(effect: str) -> bool:
+    """Return whether an effect is one of BY_FLIGHT, or a mass, which stands for thrust."""
+    return effect in BY_FLIGHT or effect in EFFECTS and any(_alike(effect, one)
+                                                            for one in BY_FLIGHT)
+
+
 def tracked_effects(effects: pyarrow.Table) -> dict[str, dict[str, str]]:
     """
     Return {vehicle: {effect: form}} to track, of the table `effects` of a data set.
