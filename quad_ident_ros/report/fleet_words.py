@@ -94,7 +94,9 @@ def _why(event: Event) -> str:
 def nothing_line(found: Insight) -> str:
     """Return what to say where there is no Point, and whether there could be one."""
     if not found.histories:
-        return 'No effect is followed over time, because no verdict names one'
+        return ('No effect is followed over time, because none can be fitted to single flights: '
+                'that takes position or velocity, and thrust also commands that were not scaled '
+                'by the weight')
     over_time = any(len(one.series.values) >= history.LEAST for one in found.histories)
     beside = any(len(one.vehicles) >= sisters.LEAST for one in found.sisters)
     return ', and '.join((

@@ -268,6 +268,15 @@ def test_what_cannot_be_seen_is_not_denied(tmp_path, vehicles, flights, said):
     assert nothing_line(insight(tmp_path)) == said
 
 
+def test_where_nothing_could_be_fitted_that_is_not_laid_to_the_verdicts(tmp_path):
+    """Thrust is tracked whatever they name."""
+    data_set(tmp_path, vehicles=2)
+    for key in keys_of(tmp_path, 'parameters'):
+        write_rows(tmp_path, 'parameters', key, [])
+    assert nothing_line(insight(tmp_path)).startswith(
+        'No effect is followed over time, because none can be fitted to single flights: ')
+
+
 @pytest.mark.slow
 def test_whole_diagnoses_are_left_on_the_disk(tmp_path):
     """Those of a fleet take gigabytes, and add nothing here to the other columns."""
