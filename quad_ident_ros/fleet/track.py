@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The parameters of effects fitted to each flight by itself, so that a change has a date."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 import hashlib
 from pathlib import Path
@@ -11,6 +11,8 @@ from typing import Any
 import pyarrow
 import pyarrow.compute as pc
 
+from quad_ident_ros.data.differentiated import with_motion
+from quad_ident_ros.data.inertial import is_inertial
 from quad_ident_ros.data.load import load_all
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.data.thrust_level import FULL_SPEED
@@ -20,6 +22,7 @@ from quad_ident_ros.fleet.grouping import Group, Member
 from quad_ident_ros.fleet.look import why_missing
 from quad_ident_ros.fleet.store import write_rows
 from quad_ident_ros.greybox.fit import Fit, fit, OF_LEVEL
+from quad_ident_ros.greybox.rotor_answer import is_driven_by_speeds, OF_MOTORS
 from quad_ident_ros.greybox.taken_in import taken_in
 
 MOST = 0.5      # share of the fleet's vehicles from which on an effect is compared in all of them
@@ -134,7 +137,8 @@ def track(tracking: Tracking, out: str | Path) -> None:
     """
     Fit the effects of a Tracking to each flight of its group and write the rows.
 
-    A flight that cannot be fitted has none, and no thrust where that follows from the weight.
+    A flight that cannot be fitted has none. One that can show none of them, such as thrust that
+    follows from the weight, has a row of covariances without names: nothing is wrong with it.
     Raises LookupError where one is not there any more, and OSError where nothing can be written.
     """
     group = tracking.group
@@ -150,6 +154,7 @@ def track(tracking: Tracking, out: str | Path) -> None:
                 load_all(member.path, group.mapping, group.nominal), group.nominal)]
             free = _determined(names, records)
             if not free:
+                covariances.append({'flight': member.flight})
                 continue
             found = fit(records, group.nominal, free)
         except Exception:   # of a library, too: it takes no other flight with it
@@ -161,10 +166,19 @@ def track(tracking: Tracking, out: str | Path) -> None:
     write_rows(out, 'covariances', tracking.key, covariances)
 
 
-def _determined(names: Sequence[str], records: Iterable[FlightRecord]) -> list[str]:
-    """Return the names but those of what records scaled by the weight do not determine."""
+def _determined(names: Sequence[str], records: Sequence[FlightRecord]) -> list[str]:
+    """
+    Return the names of what records can show.
+
+    Without position and velocity a fit shows nothing; commands that the weight scaled do not show
+    thrust, and speeds in place of commands no motors.
+    """
+    if any(is_inertial(with_motion(record)) for record in records):
+        return []
     levelled = any(FULL_SPEED in record.info for record in records)
-    return [name for name in names if not (levelled and name in OF_LEVEL)]
+    driven = any(map(is_driven_by_speeds, records))
+    return [name for name in names if not (levelled and name in OF_LEVEL
+                                           or driven and name.partition('.')[0] in OF_MOTORS)]
 
 
 def _parameters(effect: str, form: str, rotors: int) -> Sequence[Parameter]:

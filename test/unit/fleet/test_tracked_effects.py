@@ -2,11 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which effects are followed from flight to flight, and what becomes of flights that cannot be."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from quad_ident_ros.cluster import Done, TimeOver
+from quad_ident_ros.data.commands import BY_SPEEDS
+from quad_ident_ros.data.inertial import POSITION, VELOCITY
 from quad_ident_ros.data.thrust_level import FULL_SPEED
 from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.fleet.manifest import listed
@@ -19,6 +22,7 @@ import pyarrow  # noqa: E402, I100
 
 from quad_ident_ros.fleet import run, track  # noqa: E402, I100
 from quad_ident_ros.fleet.grouping import groups_of  # noqa: E402, I100
+from quad_ident_ros.fleet.insight import insight  # noqa: E402, I100
 from quad_ident_ros.fleet.look import look  # noqa: E402, I100
 from quad_ident_ros.fleet.plan import planned  # noqa: E402, I100
 from quad_ident_ros.fleet.store import keys_of, read_rows, write_rows  # noqa: E402, I100
@@ -131,6 +135,44 @@ def test_thrust_of_a_log_that_the_weight_scaled_takes_no_other_effect_with_it(
         rows = read_rows(tmp_path, 'parameters', tracking.key, ['effect', 'value'])
         assert [row['effect'] for row in rows] == [*effects][:-1]
         assert [row['value'] for row in rows] == pytest.approx([0.2] * len(rows), abs=0.02)
+
+
+@pytest.mark.slow
+def test_speeds_in_place_of_commands_take_no_effect_but_those_of_motors_with_them(
+        group, tmp_path, monkeypatch):
+    """The lag of the motors is tracked in all vehicles where most have it."""
+    record = fly_closed_loop(group.nominal, {'rotor_drag': {'coefficient': 0.2}}, 'figure8',
+                             duration=6.0)
+    record.info[BY_SPEEDS] = True
+    monkeypatch.setattr(track, 'load_all', lambda *_: [record])
+    tracking = Tracking(group, {'motor_lag': 'first_order', 'rotor_drag': 'by_speed'})
+    track.track(tracking, tmp_path)
+    row, = read_rows(tmp_path, 'parameters', tracking.key)
+    assert row['effect'] == 'rotor_drag' and row['value'] == pytest.approx(0.2, abs=0.02)
+
+
+@pytest.mark.parametrize('kind', ['scaled by the weight', 'without a pose'])
+def test_a_flight_that_can_show_nothing_is_no_log_to_check(group, tmp_path, monkeypatch, kind):
+    """Beside one of the same vehicle that shows thrust, such a log was called different."""
+    record = fly_closed_loop(group.nominal, {}, 'figure8', duration=5.0,
+                             noise=SENSORS['mocap_imu'])
+    if kind == 'scaled by the weight':
+        record.info[FULL_SPEED] = 1500.0
+    else:
+        record = replace(record, columns={name: values for name, values in record.columns.items()
+                                          if name not in (*POSITION, *VELOCITY)})
+    monkeypatch.setattr(track, 'load_all', lambda *_: [record])
+    tracking = Tracking(group, {'thrust_scale': 'factor'})
+    whose = {'group': 'other', 'vehicle': 'seven', 'configuration': '',
+             'date': group.flights[0].date}
+    write_rows(tmp_path, 'flights', 'other', [whose | {
+        'flight': name, 'path': f'{name}.csv', 'status': 'diagnosed'} for name in 'bc'])
+    write_rows(tmp_path, 'parameters', 'other', [whose | {
+        'flight': 'b', 'effect': 'thrust_scale', 'parameter': 'factor', 'unit': '1',
+        'value': 1.0, 'std': 0.001}])
+    assert {name for _, name, _ in insight(tmp_path).suspect} == {'a.csv', 'c.csv'}
+    track.track(tracking, tmp_path)
+    assert {name for _, name, _ in insight(tmp_path).suspect} == {'c.csv'}
 
 
 @pytest.mark.slow
