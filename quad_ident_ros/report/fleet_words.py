@@ -7,12 +7,14 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
+import numpy as np
+
 from quad_ident_ros.data.counted import counted
 from quad_ident_ros.effects.registry import EFFECTS, NULL, PLACE, titled
 from quad_ident_ros.fleet import history, sisters
 from quad_ident_ros.fleet.events import Event, Part
 from quad_ident_ros.fleet.history import Change, Drift
-from quad_ident_ros.fleet.insight import Insight, Odd, Presence
+from quad_ident_ros.fleet.insight import Insight, MOST, Odd, Presence
 from quad_ident_ros.report.sizes import handy, PER_CENT, sized, with_error
 
 WORSE, CHANGED, DRIFTS, DIFFERS, MODEL, FAILED, LOGS, SUSPECT, APART, SMALL = (
@@ -20,6 +22,8 @@ WORSE, CHANGED, DRIFTS, DIFFERS, MODEL, FAILED, LOGS, SUSPECT, APART, SMALL = (
     'not diagnosed', 'logs refused', 'logs to check', 'not compared', 'small')
 """Why something is worth a look, the most urgent first: a drift goes on."""
 NAMED = 5           # vehicles or parts that a sentence lists
+ALIKE = 3.0         # standard errors and deviations within which drifts are alike
+NORMAL = 1.4826     # standard deviation of normal numbers over the median distance
 
 
 @dataclass(frozen=True)
@@ -43,11 +47,21 @@ def points(found: Insight) -> tuple[Point, ...]:
     groups: dict[str, list[Point]] = {why: [] for why in (WORSE, CHANGED, DRIFTS, DIFFERS, MODEL,
                                                           FAILED, LOGS, SUSPECT, APART,
                                                           SMALL)}
+    together = shared_drifts(found)
+    alike = {event for some, _ in together for event in some}
     for event in sorted(found.events, key=lambda one: -one.date.timestamp()):
+        if event in alike:
+            continue    # one entry says it of all
         why = _why(event)
         groups[why if event.material else SMALL].append(
             Point(why, with_configuration(event.vehicle, event.configuration),
                   event_line(event) + _small(event.material)))
+    for some, count in together:
+        why = Counter(map(_why, some)).most_common(1)[0][0]
+        material = any(event.material for event in some)
+        groups[why if material else SMALL].append(Point(
+            why, with_configuration('all', some[0].configuration),
+            shared_drift_line(some, count) + _small(material)))
     since = {(event.configuration, event.vehicle, part.effect)
              for event in found.events for part in event.parts}
     for odd in found.odd:
@@ -121,6 +135,45 @@ def event_line(event: Event) -> str:
         text += ', with ' + ', '.join(
             f'{titled(part.effect)} {part.parameter} {_signed(part)}' for part in others)
     return f'{text} (probability {_probability(event.probability)})'
+
+
+def shared_drifts(found: Insight) -> list[tuple[list[Event], int]]:
+    """
+    Return drifts that most vehicles have alike, as those of warmer air, each with how many could.
+
+    A vehicle that drifts otherwise than the others, or with something else, is not among them.
+    """
+    could = Counter((one.series.configuration, one.series.effect, one.series.parameter)
+                    for one in found.histories if len(one.series.values) >= history.LEAST)
+    drifts: dict[tuple[str, str, str], list[tuple[Event, Drift]]] = {}
+    for event in found.events:
+        first = event.parts[0]
+        if isinstance(first.change, Drift) and len(event.parts) == 1:
+            drifts.setdefault((event.configuration, first.effect, first.parameter), []).append(
+                (event, first.change))
+    made = []
+    for key, some in drifts.items():
+        rates = np.array([drift.per_week for _, drift in some])
+        away = np.abs(rates - np.median(rates))
+        errors = np.hypot([drift.std for _, drift in some], NORMAL * np.median(away))
+        near = [event for (event, _), far, error in zip(some, away, errors, strict=True)
+                if far <= ALIKE * error]
+        if len(near) >= sisters.LEAST and len(near) > MOST * could[key]:
+            made.append((near, could[key]))
+    return made
+
+
+def shared_drift_line(some: Sequence[Event], count: int) -> str:
+    """Return a sentence on a drift that most of so many vehicles have alike."""
+    first = some[0].parts[0]
+    rates = [part.change.per_week for event in some for part in event.parts
+             if isinstance(part.change, Drift)]
+    middle = float(np.median(rates))
+    return (f'{titled(first.effect)}: {first.parameter} {"rises" if middle > 0 else "falls"} in '
+            f'{len(some)} of {count} vehicles alike, by '
+            f'{sized(abs(middle), float(np.std(rates)), unit_of(first))} a week from vehicle to '
+            'vehicle: rather season, weather or the wear of all than one vehicle; a column with '
+            'the temperature in a manifest takes the weather out')
 
 
 def odd_line(odd: Odd) -> str:

@@ -112,6 +112,25 @@ def test_the_list_begins_with_what_gets_worse(found):
     assert 'each with values of its own' in shared['com_offset']
 
 
+def test_a_drift_that_most_vehicles_have_alike_is_one_entry(tmp_path):
+    """In spring the thrust of all falls with the density of the air; of one it falls faster."""
+    data_set(tmp_path, slopes=[(f'uav{number}', 'thrust_scale', 'factor',
+                                -0.02 if number == 5 else -0.005) for number in range(1, 8)])
+    found = insight(tmp_path)
+    assert len(found.events) == 7
+    one, shared = (point for point in points(found) if point.why == 'gets worse')
+    assert one.where == 'uav5' and shared.where == 'all'
+    assert 'falls in 6 of 8 vehicles alike, by 0.5' in shared.text and '%' in shared.text
+    assert 'temperature' in shared.text
+
+
+def test_a_drift_of_a_few_vehicles_is_theirs(tmp_path):
+    data_set(tmp_path, slopes=[(f'uav{number}', 'thrust_scale', 'factor', -0.005)
+                               for number in range(1, 5)])
+    assert [one.where for one in points(insight(tmp_path)) if one.why == 'gets worse'] == [
+        'uav1', 'uav2', 'uav3', 'uav4']
+
+
 def test_what_is_sure_and_in_no_verdict_comes_last(tmp_path):
     """Other than of thrust, a drift that no verdict names hardly moves the vehicle."""
     data_set(tmp_path, slopes=[('uav5', 'com_offset', 'x', 2e-3)], wrong=[WRONG])
