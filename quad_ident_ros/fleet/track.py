@@ -52,7 +52,7 @@ class Tracking:
 
 def is_by_flight(effect: str) -> bool:
     """Return whether an effect is one of BY_FLIGHT, or a mass, which stands for thrust."""
-    return effect in BY_FLIGHT or effect in EFFECTS and any(_alike(effect, one)
+    return effect in BY_FLIGHT or effect in EFFECTS and any(look_alike(effect, one)
                                                             for one in BY_FLIGHT)
 
 
@@ -106,12 +106,12 @@ def _without_alternatives(common: Forms, often: Mapping[str, int], named: pyarro
     kept: list[str] = []
     for effect in sorted(common, key=lambda name: (-often[name], -count(name))):
         if all(count(effect, one) >= TOGETHER * min(count(effect), count(one))
-               for one in kept if _alike(effect, one)):
+               for one in kept if look_alike(effect, one)):
             kept.append(effect)
     return {effect: common[effect] for effect in kept}
 
 
-def _alike(effect: str, other: str) -> bool:
+def look_alike(effect: str, other: str) -> bool:
     """
     Return whether two effects look alike in a single flight.
 
@@ -128,7 +128,7 @@ def _apart(common: Forms, found: Forms) -> list[str]:
     kept = list(common)
     for effect in sorted((name for name in EFFECTS if name in found and name not in common),
                          key=lambda name: -sum(found[name].values())):
-        if not any(_alike(effect, one) for one in kept):
+        if not any(look_alike(effect, one) for one in kept):
             kept.append(effect)
     return sorted(kept, key=list(EFFECTS).index)
 

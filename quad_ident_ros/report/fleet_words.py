@@ -15,6 +15,7 @@ from quad_ident_ros.fleet import history, sisters
 from quad_ident_ros.fleet.events import Event, Part
 from quad_ident_ros.fleet.history import Change, Drift
 from quad_ident_ros.fleet.insight import Insight, MOST, Odd, Presence
+from quad_ident_ros.fleet.track import look_alike
 from quad_ident_ros.report.sizes import handy, PER_CENT, sized, with_error
 
 WORSE, CHANGED, DRIFTS, DIFFERS, MODEL, FAILED, LOGS, SUSPECT, APART, SMALL = (
@@ -73,10 +74,17 @@ def points(found: Insight) -> tuple[Point, ...]:
     told = since | {(odd.configuration, odd.sister.vehicle, odd.effect) for odd in found.odd}
     for one in found.present:
         names = [name for name in one.having if (one.configuration, name, one.effect) not in told]
-        if names and one.vehicles > 1 and not one.shared:
-            groups[DIFFERS].append(Point(
-                DIFFERS, with_configuration(listed(names), one.configuration),
-                few_line(one, names, found)))
+        if one.vehicles > 1 and not one.shared:
+            instead = {name: _instead(one, name, found, told) for name in names}
+            if alone := [name for name in names if not instead[name]]:
+                groups[DIFFERS].append(Point(
+                    DIFFERS, with_configuration(listed(alone), one.configuration),
+                    few_line(one, alone, found)))
+            groups[SMALL] += [Point(
+                DIFFERS, with_configuration(name, one.configuration),
+                f'{few_line(one, [name], found)}; single flights show it as {titled(other)}, '
+                'which most have, and in which it does not differ from its sisters')
+                for name, other in instead.items() if other]
     groups[MODEL] += [Point(MODEL, 'all', shared_line(one, found)) for one in found.present
                       if one.shared]
     groups[FAILED] += _logs(found, FAILED)
@@ -84,6 +92,24 @@ def points(found: Insight) -> tuple[Point, ...]:
     groups[SUSPECT] += _suspect(found)
     groups[APART] += _apart(found)
     return tuple(point for some in groups.values() for point in some)
+
+
+def _instead(one: Presence, vehicle: str, found: Insight, told: set[tuple[str, str, str]]) -> str:
+    """
+    Return the effect of most vehicles that verdicts may have taken for a rarer one, or ''.
+
+    It looks like that, is tracked in its place, and the vehicle does not differ in it: told has
+    (configuration, vehicle, effect) of what does.
+    """
+    for each in found.sisters:
+        if (each.configuration == one.configuration and look_alike(each.effect, one.effect)
+                and len(each.vehicles) >= sisters.LEAST
+                and any(other.shared and (other.configuration, other.effect)
+                        == (each.configuration, each.effect) for other in found.present)
+                and any(sister.vehicle == vehicle for sister in each.vehicles)
+                and (each.configuration, vehicle, each.effect) not in told):
+            return each.effect
+    return ''
 
 
 def with_configuration(name: str, configuration: str) -> str:

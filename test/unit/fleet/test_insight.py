@@ -131,6 +131,23 @@ def test_a_drift_of_a_few_vehicles_is_theirs(tmp_path):
         'uav1', 'uav2', 'uav3', 'uav4']
 
 
+@pytest.mark.parametrize(('odd', 'last'), [((), True), (
+    [('uav4', 'com_offset', 'x', 0.02)], False)])
+def test_what_verdicts_may_take_for_an_effect_of_most_vehicles_comes_last(tmp_path, odd, last):
+    """An offset towards one rotor looks like a weak one; where it is large, it is worth a look."""
+    data_set(tmp_path, odd=odd)
+    for key in keys_of(tmp_path, 'effects'):
+        drag, offset = read_rows(tmp_path, 'effects', key)
+        fault = offset | {'effect': 'rotor_fault', 'form': 'thrust'}
+        mistaken = [offset, fault][::1 if key.startswith('uav4') else -1]
+        write_rows(tmp_path, 'effects', key, [
+            drag, mistaken[0] | {'probability': 0.0, 'named': False}, mistaken[1]])
+    some = points(insight(tmp_path))
+    one, = (one for one in some if 'rotor_fault' in one.text)
+    assert one.where == 'uav4' and (one == some[-1]) == last
+    assert ('does not differ from its sisters' in one.text) == last
+
+
 def test_what_is_sure_and_in_no_verdict_comes_last(tmp_path):
     """Other than of thrust, a drift that no verdict names hardly moves the vehicle."""
     data_set(tmp_path, slopes=[('uav5', 'com_offset', 'x', 2e-3)], wrong=[WRONG])
