@@ -8,7 +8,7 @@ from datetime import datetime, timezone
 from typing import Any
 
 from quad_ident_ros.fleet.history import Change, Drift, History
-from quad_ident_ros.fleet.track import BY_FLIGHT
+from quad_ident_ros.fleet.track import is_by_flight
 
 SAME = 2            # flights apart within which changes of a vehicle have one cause
 
@@ -32,7 +32,7 @@ class Event:
     flight, file: names of the first one after the change (of a drift the first of all), by
     content and of its file; number: of it among the flights that were fitted, from 1; date: of it;
     last_before: of the flight before; material: some group of the vehicle has one of the effects
-    in its verdict, or it is one that verdicts let differ by flight and do not name (BY_FLIGHT).
+    in its verdict, or it is one that verdicts let differ by flight and do not name (is_by_flight).
     """
 
     vehicle: str
@@ -92,8 +92,12 @@ def _event(kind: str, dates: Mapping[int, float], some: Sequence[tuple[History, 
                  series.files[place], number + 1, len(dates), _date(dates[number]),
                  _date(dates[number - 1]) if isinstance(change, Change) else None, parts,
                  max(part.change.probability for part in parts),
-                 any(part.effect in BY_FLIGHT or (series.vehicle, part.effect) in named
-                     for part in parts))
+                 any(matters(series.vehicle, part.effect, named) for part in parts))
+
+
+def matters(vehicle: str, effect: str, named: set[tuple[str, str]]) -> bool:
+    """Return whether an effect matters; named: (vehicle, effect) of all verdicts."""
+    return is_by_flight(effect) or (vehicle, effect) in named
 
 
 def _date(seconds: float) -> datetime:

@@ -10,10 +10,11 @@ from typing import Any
 
 import numpy as np
 import pyarrow
+import pyarrow.compute as pc
 
 from quad_ident_ros import __version__
 from quad_ident_ros.effects.registry import EFFECTS
-from quad_ident_ros.fleet.events import Event, events
+from quad_ident_ros.fleet.events import Event, events, matters
 from quad_ident_ros.fleet.history import histories, History
 from quad_ident_ros.fleet.series import comparable, series_of
 from quad_ident_ros.fleet.sisters import Sister, Sisters, sisters
@@ -145,7 +146,7 @@ def insight(out: str | Path, on_progress: Callable[[int, int], None] = lambda do
     flown = flights.to_pylist()
     return Insight(tuple(sorted({row['vehicle'] for row in rows})), flights.num_rows, status,
                    _unused(flown, (REFUSED,)), _unused(flown, (FAILED, TIMEOUT)),
-                   _suspect([row for row in flown if row['flight'] not in apart], found),
+                   _suspect(out, [row for row in flown if row['flight'] not in apart], found),
                    tuple(sorted(Counter(apart.values()).items())), events(found, named),
                    _odd(beside, named),
                    presence(effects), _gap('', '', [row for row in rows
@@ -159,7 +160,7 @@ def _unused(flights: Iterable[dict], status: Collection[str]) -> tuple[tuple[str
                         for row in flights if row['status'] in status))
 
 
-def _suspect(flights: Iterable[dict], found: Iterable[History]
+def _suspect(out: str | Path, flights: Iterable[dict], found: Iterable[History]
              ) -> tuple[tuple[str, str, str], ...]:
     """
     Return (vehicle, file, reason) of diagnosed flights that stand apart from their vehicle's.
@@ -173,22 +174,26 @@ def _suspect(flights: Iterable[dict], found: Iterable[History]
         for place in one.odd:
             off.setdefault(one.series.flights[place], []).append(
                 f'{one.series.effect} {one.series.parameter}')
-    made = []
-    for row in flights:
-        if row['status'] != DIAGNOSED or row['vehicle'] not in fitted:
-            continue
-        if row['flight'] in off:
-            made.append((row['vehicle'], Path(row['path']).name,
-                         f'off by itself: {", ".join(off[row["flight"]])}'))
-        elif row['flight'] not in fitted[row['vehicle']]:
-            made.append((row['vehicle'], Path(row['path']).name,
-                         'cannot be fitted by itself, while others of the vehicle can'))
-    return tuple(sorted(made))
+    some = [row for row in flights if row['status'] == DIAGNOSED and row['vehicle'] in fitted]
+    reasons = {row['flight']: 'cannot be fitted by itself, while others of the vehicle can'
+               for row in some if row['flight'] not in fitted[row['vehicle']]}
+    if reasons:
+        for flight in _without_values(out):
+            reasons.pop(flight, None)
+    reasons |= {flight: f'off by itself: {", ".join(names)}' for flight, names in off.items()}
+    return tuple(sorted((row['vehicle'], Path(row['path']).name, reasons[row['flight']])
+                        for row in some if row['flight'] in reasons))
+
+
+def _without_values(out: str | Path) -> list[str]:
+    """Return the flights that can show none of what is tracked, with which nothing is wrong."""
+    table = read_table(out, 'covariances', ['flight', 'names'])
+    return table.filter(pc.is_null(table['names']))['flight'].to_pylist()
 
 
 def _odd(beside: Iterable[Sisters], named: set[tuple[str, str]]) -> tuple[Odd, ...]:
     found = [Odd(one.configuration, one.effect, one.parameter, one.unit, one.mean, one.spread,
-                 len(one.vehicles) - 1, sister, (sister.vehicle, one.effect) in named)
+                 len(one.vehicles) - 1, sister, matters(sister.vehicle, one.effect, named))
              for one in beside for sister in one.odd]
     return tuple(sorted(found, key=lambda one: -abs(one.sister.spreads)))
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a fleet teaches of each effect: how often it is present, how large, how exact its form."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -40,6 +40,9 @@ def effects_without_priors(out: str | Path, rules: Rules = RULES) -> pyarrow.Tab
     usual = groups.filter(pc.field('rules') == rules_hash(rules))['group']
     effects = read_table(out, 'effects')
     found = effects.filter(pc.is_in(effects['group'], value_set=usual.combine_chunks()))
+    if not effects.num_rows:
+        raise InputError(f'{out}: no flight is diagnosed, so that there is nothing to learn from; '
+                         f'the column reason of {out}/flights says why')
     if not found.num_rows:
         raise InputError(f'{out}: no flight was diagnosed without --priors, so that there is '
                          'nothing to learn from; run without them, into another --out')
@@ -59,9 +62,12 @@ def learned(effects: pyarrow.Table, found: Iterable[History], rules: Rules = RUL
     probability: dict[str, dict[str, list[float]]] = {}
     forms: dict[str, dict[str, set[str]]] = {}
     curves: dict[str, dict[str, list[list[float]]]] = {}
+    named: dict[str, set[str]] = {}
     for row in rows:
         probability.setdefault(row['effect'], {}).setdefault(row['vehicle'], []).append(
             row['probability'])
+        if row['named']:
+            named.setdefault(row['effect'], set()).add(row['vehicle'])
         if row['named'] and row['form']:
             forms.setdefault(row['effect'], {}).setdefault(row['form'], set()).add(row['vehicle'])
         if row['named'] and row['form_errors']:
@@ -72,7 +78,7 @@ def learned(effects: pyarrow.Table, found: Iterable[History], rules: Rules = RUL
         bounded((float(sum(map(np.mean, probability[name].values())))
                  + DOUBT * rules.usual_presence) / (len(probability[name]) + DOUBT)),
         _forms(name, {form: len(those) for form, those in forms.get(name, {}).items()}, rules),
-        _sizes(name, some), _form_error(curves.get(name, {}), rules))
+        _sizes(name, some, named.get(name, set())), _form_error(curves.get(name, {}), rules))
         for name in EFFECTS if name in probability}
 
 
@@ -87,11 +93,17 @@ def _forms(name: str, named: dict[str, int], rules: Rules) -> dict[str, float]:
     return {form: count / sum(counts.values()) for form, count in counts.items()}
 
 
-def _sizes(name: str, found: Iterable[History]) -> dict[str, float]:
-    """Return {parameter: root mean square distance from no effect, of the vehicles}, SI."""
+def _sizes(name: str, found: Iterable[History], having: Collection[str]) -> dict[str, float]:
+    """
+    Return {parameter: root mean square distance from no effect}, SI, of the vehicles `having` it.
+
+    Others, in which it is tracked because most have it, or as thrust is in all, show how exact the
+    nominal vehicle is.
+    """
     values: dict[str, list[float]] = {}
     for one in found:
-        if one.series.effect == name and (name, one.series.parameter) in PLACE:
+        if (one.series.effect == name and one.series.vehicle in having
+                and (name, one.series.parameter) in PLACE):
             values.setdefault(one.series.parameter, []).append(
                 one.level - NULL[PLACE[name, one.series.parameter]])
     return {key: float(size) for key, some in values.items()

@@ -110,11 +110,11 @@ class Summary:
         """
         Return whether the flights have no diagnosis, old or new, because all were refused.
 
-        Results that stay without their flights, or in groups of another run, are not counted in
-        groups and may be diagnoses.
+        Results that stay without their flights, in place of groups that failed, or in groups of
+        another run, are not counted as diagnosed and may be diagnoses.
         """
-        return bool(self.groups[REFUSED] and not self.groups[DIAGNOSED]
-                    and not self.kept and not self.replaced)
+        return bool(self.groups[REFUSED] and not self.groups[DIAGNOSED] and not self.kept
+                    and not self.replaced and not self.gave_way and not self.stayed)
 
 
 Tell = Callable[[Progress], None]

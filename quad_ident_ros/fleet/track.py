@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The parameters of effects fitted to each flight by itself, so that a change has a date."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 import hashlib
 from pathlib import Path
@@ -11,6 +11,8 @@ from typing import Any
 import pyarrow
 import pyarrow.compute as pc
 
+from quad_ident_ros.data.differentiated import with_motion
+from quad_ident_ros.data.inertial import is_inertial
 from quad_ident_ros.data.load import load_all
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.data.thrust_level import FULL_SPEED
@@ -20,6 +22,7 @@ from quad_ident_ros.fleet.grouping import Group, Member
 from quad_ident_ros.fleet.look import why_missing
 from quad_ident_ros.fleet.store import write_rows
 from quad_ident_ros.greybox.fit import Fit, fit, OF_LEVEL
+from quad_ident_ros.greybox.rotor_answer import is_driven_by_speeds, OF_MOTORS
 from quad_ident_ros.greybox.taken_in import taken_in
 
 MOST = 0.5      # share of the fleet's vehicles from which on an effect is compared in all of them
@@ -47,6 +50,12 @@ class Tracking:
         return f'{self.group.key}-{hashlib.sha256(names.encode()).hexdigest()[:16]}'
 
 
+def is_by_flight(effect: str) -> bool:
+    """Return whether an effect is one of BY_FLIGHT, or a mass, which stands for thrust."""
+    return effect in BY_FLIGHT or effect in EFFECTS and any(look_alike(effect, one)
+                                                            for one in BY_FLIGHT)
+
+
 def tracked_effects(effects: pyarrow.Table) -> dict[str, dict[str, str]]:
     """
     Return {vehicle: {effect: form}} to track, of the table `effects` of a data set.
@@ -56,7 +65,7 @@ def tracked_effects(effects: pyarrow.Table) -> dict[str, dict[str, str]]:
     groups name it in most often, or else the fleet. A single flight does not determine effects
     that look alike together: of these the one that most vehicles have is tracked, or else the one
     that is named more often. Both are where most vehicles have both, and verdicts name them
-    together.
+    together; and thrust is beside all but a mass.
     """
     named = effects.filter(pc.field('named'))
     counts = named.group_by(['vehicle', 'effect', 'form']).aggregate([([], 'count_all')])
@@ -97,13 +106,20 @@ def _without_alternatives(common: Forms, often: Mapping[str, int], named: pyarro
     kept: list[str] = []
     for effect in sorted(common, key=lambda name: (-often[name], -count(name))):
         if all(count(effect, one) >= TOGETHER * min(count(effect), count(one))
-               for one in kept if _alike(effect, one)):
+               for one in kept if look_alike(effect, one)):
             kept.append(effect)
     return {effect: common[effect] for effect in kept}
 
 
-def _alike(effect: str, other: str) -> bool:
-    """Return whether two effects look alike."""
+def look_alike(effect: str, other: str) -> bool:
+    """
+    Return whether two effects look alike in a single flight.
+
+    Thrust stands out of all but a mass, of which only the ratio shows: a flight within which the
+    battery sags, or of a vehicle with other inertia, tells both.
+    """
+    if effect in BY_FLIGHT or other in BY_FLIGHT:
+        return EFFECTS[effect].ratio is not None and EFFECTS[effect].ratio == EFFECTS[other].ratio
     return other in EFFECTS[effect].confused_with or effect in EFFECTS[other].confused_with
 
 
@@ -112,7 +128,7 @@ def _apart(common: Forms, found: Forms) -> list[str]:
     kept = list(common)
     for effect in sorted((name for name in EFFECTS if name in found and name not in common),
                          key=lambda name: -sum(found[name].values())):
-        if not any(_alike(effect, one) for one in kept):
+        if not any(look_alike(effect, one) for one in kept):
             kept.append(effect)
     return sorted(kept, key=list(EFFECTS).index)
 
@@ -121,7 +137,8 @@ def track(tracking: Tracking, out: str | Path) -> None:
     """
     Fit the effects of a Tracking to each flight of its group and write the rows.
 
-    A flight that cannot be fitted has none, and no thrust where that follows from the weight.
+    A flight that cannot be fitted has none. One that can show none of them, such as thrust that
+    follows from the weight, has a row of covariances without names: nothing is wrong with it.
     Raises LookupError where one is not there any more, and OSError where nothing can be written.
     """
     group = tracking.group
@@ -137,6 +154,7 @@ def track(tracking: Tracking, out: str | Path) -> None:
                 load_all(member.path, group.mapping, group.nominal), group.nominal)]
             free = _determined(names, records)
             if not free:
+                covariances.append({'flight': member.flight})
                 continue
             found = fit(records, group.nominal, free)
         except Exception:   # of a library, too: it takes no other flight with it
@@ -148,10 +166,19 @@ def track(tracking: Tracking, out: str | Path) -> None:
     write_rows(out, 'covariances', tracking.key, covariances)
 
 
-def _determined(names: Sequence[str], records: Iterable[FlightRecord]) -> list[str]:
-    """Return the names but those of what records scaled by the weight do not determine."""
+def _determined(names: Sequence[str], records: Sequence[FlightRecord]) -> list[str]:
+    """
+    Return the names of what records can show.
+
+    Without position and velocity a fit shows nothing; commands that the weight scaled do not show
+    thrust, and speeds in place of commands no motors.
+    """
+    if any(is_inertial(with_motion(record)) for record in records):
+        return []
     levelled = any(FULL_SPEED in record.info for record in records)
-    return [name for name in names if not (levelled and name in OF_LEVEL)]
+    driven = any(map(is_driven_by_speeds, records))
+    return [name for name in names if not (levelled and name in OF_LEVEL
+                                           or driven and name.partition('.')[0] in OF_MOTORS)]
 
 
 def _parameters(effect: str, form: str, rotors: int) -> Sequence[Parameter]:

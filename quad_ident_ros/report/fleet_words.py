@@ -7,12 +7,15 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
+import numpy as np
+
 from quad_ident_ros.data.counted import counted
 from quad_ident_ros.effects.registry import EFFECTS, NULL, PLACE, titled
 from quad_ident_ros.fleet import history, sisters
 from quad_ident_ros.fleet.events import Event, Part
 from quad_ident_ros.fleet.history import Change, Drift
-from quad_ident_ros.fleet.insight import Insight, Odd, Presence
+from quad_ident_ros.fleet.insight import Insight, MOST, Odd, Presence
+from quad_ident_ros.fleet.track import look_alike
 from quad_ident_ros.report.sizes import handy, PER_CENT, sized, with_error
 
 WORSE, CHANGED, DRIFTS, DIFFERS, MODEL, FAILED, LOGS, SUSPECT, APART, SMALL = (
@@ -20,6 +23,8 @@ WORSE, CHANGED, DRIFTS, DIFFERS, MODEL, FAILED, LOGS, SUSPECT, APART, SMALL = (
     'not diagnosed', 'logs refused', 'logs to check', 'not compared', 'small')
 """Why something is worth a look, the most urgent first: a drift goes on."""
 NAMED = 5           # vehicles or parts that a sentence lists
+ALIKE = 3.0         # standard errors and deviations within which drifts are alike
+NORMAL = 1.4826     # standard deviation of normal numbers over the median distance
 
 
 @dataclass(frozen=True)
@@ -43,11 +48,21 @@ def points(found: Insight) -> tuple[Point, ...]:
     groups: dict[str, list[Point]] = {why: [] for why in (WORSE, CHANGED, DRIFTS, DIFFERS, MODEL,
                                                           FAILED, LOGS, SUSPECT, APART,
                                                           SMALL)}
+    together = shared_drifts(found)
+    alike = {event for some, _ in together for event in some}
     for event in sorted(found.events, key=lambda one: -one.date.timestamp()):
+        if event in alike:
+            continue    # one entry says it of all
         why = _why(event)
         groups[why if event.material else SMALL].append(
             Point(why, with_configuration(event.vehicle, event.configuration),
                   event_line(event) + _small(event.material)))
+    for some, count in together:
+        why = Counter(map(_why, some)).most_common(1)[0][0]
+        material = any(event.material for event in some)
+        groups[why if material else SMALL].append(Point(
+            why, with_configuration('all', some[0].configuration),
+            shared_drift_line(some, count) + _small(material)))
     since = {(event.configuration, event.vehicle, part.effect)
              for event in found.events for part in event.parts}
     for odd in found.odd:
@@ -59,10 +74,17 @@ def points(found: Insight) -> tuple[Point, ...]:
     told = since | {(odd.configuration, odd.sister.vehicle, odd.effect) for odd in found.odd}
     for one in found.present:
         names = [name for name in one.having if (one.configuration, name, one.effect) not in told]
-        if names and one.vehicles > 1 and not one.shared:
-            groups[DIFFERS].append(Point(
-                DIFFERS, with_configuration(listed(names), one.configuration),
-                few_line(one, names, found)))
+        if one.vehicles > 1 and not one.shared:
+            instead = {name: _instead(one, name, found, told) for name in names}
+            if alone := [name for name in names if not instead[name]]:
+                groups[DIFFERS].append(Point(
+                    DIFFERS, with_configuration(listed(alone), one.configuration),
+                    few_line(one, alone, found)))
+            groups[SMALL] += [Point(
+                DIFFERS, with_configuration(name, one.configuration),
+                f'{few_line(one, [name], found)}; single flights show it as {titled(other)}, '
+                'which most have, and in which it does not differ from its sisters')
+                for name, other in instead.items() if other]
     groups[MODEL] += [Point(MODEL, 'all', shared_line(one, found)) for one in found.present
                       if one.shared]
     groups[FAILED] += _logs(found, FAILED)
@@ -70,6 +92,24 @@ def points(found: Insight) -> tuple[Point, ...]:
     groups[SUSPECT] += _suspect(found)
     groups[APART] += _apart(found)
     return tuple(point for some in groups.values() for point in some)
+
+
+def _instead(one: Presence, vehicle: str, found: Insight, told: set[tuple[str, str, str]]) -> str:
+    """
+    Return the effect of most vehicles that verdicts may have taken for a rarer one, or ''.
+
+    It looks like that, is tracked in its place, and the vehicle does not differ in it: told has
+    (configuration, vehicle, effect) of what does.
+    """
+    for each in found.sisters:
+        if (each.configuration == one.configuration and look_alike(each.effect, one.effect)
+                and len(each.vehicles) >= sisters.LEAST
+                and any(other.shared and (other.configuration, other.effect)
+                        == (each.configuration, each.effect) for other in found.present)
+                and any(sister.vehicle == vehicle for sister in each.vehicles)
+                and (each.configuration, vehicle, each.effect) not in told):
+            return each.effect
+    return ''
 
 
 def with_configuration(name: str, configuration: str) -> str:
@@ -94,7 +134,9 @@ def _why(event: Event) -> str:
 def nothing_line(found: Insight) -> str:
     """Return what to say where there is no Point, and whether there could be one."""
     if not found.histories:
-        return 'No effect is followed over time, because no verdict names one'
+        return ('No effect is followed over time, because none can be fitted to single flights: '
+                'that takes position or velocity, and thrust also commands that were not scaled '
+                'by the weight')
     over_time = any(len(one.series.values) >= history.LEAST for one in found.histories)
     beside = any(len(one.vehicles) >= sisters.LEAST for one in found.sisters)
     return ', and '.join((
@@ -119,6 +161,45 @@ def event_line(event: Event) -> str:
         text += ', with ' + ', '.join(
             f'{titled(part.effect)} {part.parameter} {_signed(part)}' for part in others)
     return f'{text} (probability {_probability(event.probability)})'
+
+
+def shared_drifts(found: Insight) -> list[tuple[list[Event], int]]:
+    """
+    Return drifts that most vehicles have alike, as those of warmer air, each with how many could.
+
+    A vehicle that drifts otherwise than the others, or with something else, is not among them.
+    """
+    could = Counter((one.series.configuration, one.series.effect, one.series.parameter)
+                    for one in found.histories if len(one.series.values) >= history.LEAST)
+    drifts: dict[tuple[str, str, str], list[tuple[Event, Drift]]] = {}
+    for event in found.events:
+        first = event.parts[0]
+        if isinstance(first.change, Drift) and len(event.parts) == 1:
+            drifts.setdefault((event.configuration, first.effect, first.parameter), []).append(
+                (event, first.change))
+    made = []
+    for key, some in drifts.items():
+        rates = np.array([drift.per_week for _, drift in some])
+        away = np.abs(rates - np.median(rates))
+        errors = np.hypot([drift.std for _, drift in some], NORMAL * np.median(away))
+        near = [event for (event, _), far, error in zip(some, away, errors, strict=True)
+                if far <= ALIKE * error]
+        if len(near) >= sisters.LEAST and len(near) > MOST * could[key]:
+            made.append((near, could[key]))
+    return made
+
+
+def shared_drift_line(some: Sequence[Event], count: int) -> str:
+    """Return a sentence on a drift that most of so many vehicles have alike."""
+    first = some[0].parts[0]
+    rates = [part.change.per_week for event in some for part in event.parts
+             if isinstance(part.change, Drift)]
+    middle = float(np.median(rates))
+    return (f'{titled(first.effect)}: {first.parameter} {"rises" if middle > 0 else "falls"} in '
+            f'{len(some)} of {count} vehicles alike, by '
+            f'{sized(abs(middle), float(np.std(rates)), unit_of(first))} a week from vehicle to '
+            'vehicle: rather season, weather or the wear of all than one vehicle; a column with '
+            'the temperature in a manifest takes the weather out')
 
 
 def odd_line(odd: Odd) -> str:

@@ -174,6 +174,14 @@ def test_where_there_is_a_diagnosis_the_command_ends_with_0(
     assert 'no flight could be diagnosed' not in capsys.readouterr().out
 
 
+@pytest.mark.parametrize('elsewhere', [
+    {'gave_way': ('c.csv: another run has diagnosed it',)}, {'stayed': ('seven: it hung',)}])
+def test_a_diagnosis_of_another_run_or_of_before_is_not_denied(elsewhere):
+    """These runs end with 3 as well, and say why by themselves."""
+    groups = {'diagnosed': 0, 'refused': 1, 'failed': 0, 'timeout': 0}
+    assert 'could be diagnosed' not in summary_text(Summary(2, groups, 0, (), **elsewhere), 'out')
+
+
 @pytest.mark.parametrize('drawn, said', [
     (object(), "Dask's dashboard: http://10.0.0.5:8787/status"),
     (None, "Dask's dashboard needs bokeh where the scheduler runs: pip install bokeh")])

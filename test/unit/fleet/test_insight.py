@@ -17,6 +17,7 @@ import pytest
 from quad_ident_ros.report.data import finite
 
 pytest.importorskip('pyarrow', reason="pyarrow is not installed: pip install '.[fleet]'")
+from quad_ident_ros.fleet.events import events  # noqa: E402, I100
 from quad_ident_ros.fleet.history import histories  # noqa: E402, I100
 from quad_ident_ros.fleet.insight import insight  # noqa: E402, I100
 from quad_ident_ros.fleet.store import keys_of, read_rows, write_rows  # noqa: E402, I100
@@ -97,19 +98,65 @@ def test_a_flight_that_is_off_by_itself_is_to_be_checked(found):
 def test_the_list_begins_with_what_gets_worse(found):
     """Drifts come before changes, these before odd vehicles, then the model and the logs."""
     some = points(found)
-    assert [one.why for one in some][:3] == ['changed', 'differs from its sisters',
+    assert [one.why for one in some][:4] == ['gets worse', 'changed', 'differs from its sisters',
                                              'the model is wrong']
-    assert [one.where for one in some][:2] == ['uav3', 'uav7']
-    assert some[0].text.startswith('from 3 June 2026 on, offset of the centre of mass')
-    assert 'mm' in some[0].text and '; 11.csv, flight 12 of 20, is the first' in some[0].text
+    assert [one.where for one in some][:3] == ['uav5', 'uav3', 'uav7']
+    # No verdict names thrust here, and none would: they let it differ by flight.
+    assert 'falls by' in some[0].text and '% a week' in some[0].text
+    assert 'matters little' not in some[0].text
+    assert some[1].text.startswith('from 3 June 2026 on, offset of the centre of mass')
+    assert 'mm' in some[1].text and '; 11.csv, flight 12 of 20, is the first' in some[1].text
     shared = {one.text.partition('(')[2].partition(')')[0]: one.text for one in some
               if one.why == 'the model is wrong'}
     assert shared['rotor_drag'].endswith('add it to the vehicle file')
     assert 'each with values of its own' in shared['com_offset']
-    # Thrust is in no verdict here: its drift is sure, but hardly moves the vehicle.
-    assert (some[-1].where, some[-1].why) == ('uav5', 'gets worse')
-    assert 'falls by' in some[-1].text and '% a week' in some[-1].text
-    assert 'matters little' in some[-1].text
+
+
+def test_a_drift_that_most_vehicles_have_alike_is_one_entry(tmp_path):
+    """In spring the thrust of all falls with the density of the air; of one it falls faster."""
+    data_set(tmp_path, slopes=[(f'uav{number}', 'thrust_scale', 'factor',
+                                -0.02 if number == 5 else -0.005) for number in range(1, 8)])
+    found = insight(tmp_path)
+    assert len(found.events) == 7
+    one, shared = (point for point in points(found) if point.why == 'gets worse')
+    assert one.where == 'uav5' and shared.where == 'all'
+    assert 'falls in 6 of 8 vehicles alike, by 0.5' in shared.text and '%' in shared.text
+    assert 'temperature' in shared.text
+
+
+def test_a_drift_of_a_few_vehicles_is_theirs(tmp_path):
+    data_set(tmp_path, slopes=[(f'uav{number}', 'thrust_scale', 'factor', -0.005)
+                               for number in range(1, 5)])
+    assert [one.where for one in points(insight(tmp_path)) if one.why == 'gets worse'] == [
+        'uav1', 'uav2', 'uav3', 'uav4']
+
+
+@pytest.mark.parametrize(('odd', 'last'), [((), True), (
+    [('uav4', 'com_offset', 'x', 0.02)], False)])
+def test_what_verdicts_may_take_for_an_effect_of_most_vehicles_comes_last(tmp_path, odd, last):
+    """An offset towards one rotor looks like a weak one; where it is large, it is worth a look."""
+    data_set(tmp_path, odd=odd)
+    for key in keys_of(tmp_path, 'effects'):
+        drag, offset = read_rows(tmp_path, 'effects', key)
+        fault = offset | {'effect': 'rotor_fault', 'form': 'thrust'}
+        mistaken = [offset, fault][::1 if key.startswith('uav4') else -1]
+        write_rows(tmp_path, 'effects', key, [
+            drag, mistaken[0] | {'probability': 0.0, 'named': False}, mistaken[1]])
+    some = points(insight(tmp_path))
+    one, = (one for one in some if 'rotor_fault' in one.text)
+    assert one.where == 'uav4' and (one == some[-1]) == last
+    assert ('does not differ from its sisters' in one.text) == last
+
+
+def test_what_is_sure_and_in_no_verdict_comes_last(tmp_path):
+    """Other than of thrust, a drift that no verdict names hardly moves the vehicle."""
+    data_set(tmp_path, slopes=[('uav5', 'com_offset', 'x', 2e-3)], wrong=[WRONG])
+    for key in (key for key in keys_of(tmp_path, 'groups') if key.startswith('uav5')):
+        rows = read_rows(tmp_path, 'groups', key)
+        write_rows(tmp_path, 'groups', key, [row | {'verdict': ['rotor_drag']} for row in rows])
+    last = points(insight(tmp_path))[-1]
+    assert (last.where, last.why) == ('uav5', 'gets worse')
+    assert last.text.endswith('; no verdict names it, so it matters little')
 
 
 def test_the_data_is_json_of_its_schema(found):
@@ -177,6 +224,21 @@ def test_a_drift_towards_no_effect_does_not_get_worse(tmp_path):
     assert why == 'drifts'
 
 
+@pytest.mark.parametrize(('effect', 'material'), [
+    ('thrust_scale', True), ('mass_offset', True), ('rotor_drag', False)])
+def test_what_verdicts_let_differ_by_flight_matters_without_being_named(effect, material):
+    """A mass stands for thrust: single flights show the ratio alone."""
+    falls = 1.0 - 0.01 * np.arange(20) + 1e-3 * np.sin(np.arange(20.0) ** 2)
+    one, = events(histories([series(falls, 1e-3, effect=effect)]), set())
+    assert one.kind == 'drift' and one.material == material
+
+
+def test_thrust_that_its_sisters_do_not_have_matters_though_no_verdict_names_it(tmp_path):
+    data_set(tmp_path, odd=[('uav7', 'thrust_scale', 'factor', -0.2)])
+    one, = (one for one in points(insight(tmp_path)) if one.where == 'uav7')
+    assert one.why == 'differs from its sisters' and 'matters little' not in one.text
+
+
 def test_a_fleet_of_one_vehicle_has_its_values_on_the_page(tmp_path):
     """There is nobody to compare it with, and it is no less there."""
     data_set(tmp_path, vehicles=1, flights=6)
@@ -240,6 +302,15 @@ def test_vehicles_are_named_with_their_configuration(tmp_path):
 def test_what_cannot_be_seen_is_not_denied(tmp_path, vehicles, flights, said):
     data_set(tmp_path, vehicles=vehicles, flights=flights)
     assert nothing_line(insight(tmp_path)) == said
+
+
+def test_where_nothing_could_be_fitted_that_is_not_laid_to_the_verdicts(tmp_path):
+    """Thrust is tracked whatever they name."""
+    data_set(tmp_path, vehicles=2)
+    for key in keys_of(tmp_path, 'parameters'):
+        write_rows(tmp_path, 'parameters', key, [])
+    assert nothing_line(insight(tmp_path)).startswith(
+        'No effect is followed over time, because none can be fitted to single flights: ')
 
 
 @pytest.mark.slow

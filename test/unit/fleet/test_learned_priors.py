@@ -63,6 +63,24 @@ def test_verdicts_that_used_priors_teach_none(tmp_path):
         effects_without_priors(tmp_path)
 
 
+def test_flights_that_are_all_refused_are_not_blamed_on_priors(tmp_path):
+    with pytest.raises(InputError, match='no flight is diagnosed, so that there is nothing'):
+        effects_without_priors(tmp_path)
+
+
+def test_vehicles_without_an_effect_do_not_say_how_large_it_is(tmp_path):
+    """Thrust is tracked in all: a thousand that have none would leave the next no room for it."""
+    data_set(tmp_path, odd=[('uav7', 'thrust_scale', 'factor', -0.2)])
+    for number in range(8):
+        name = f'uav{number + 1}'
+        write_rows(tmp_path, 'effects', name, [{
+            'group': f'{name}-0', 'vehicle': name, 'configuration': '', 'date': START,
+            'effect': 'thrust_scale', 'probability': float(number == 6), 'form': 'factor',
+            'named': number == 6}])
+    found = learned(read_table(tmp_path, 'effects'), insight(tmp_path).histories)
+    assert found['thrust_scale'].sizes['factor'] == pytest.approx(0.2, abs=0.03)
+
+
 def test_sizes_are_those_of_the_vehicles(taught):
     """How far the parameters usually are from no effect, of drag of one sign and of an offset."""
     _, mean, spread, _ = TRACKED['rotor_drag', 'coefficient']

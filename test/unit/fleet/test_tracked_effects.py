@@ -2,15 +2,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which effects are followed from flight to flight, and what becomes of flights that cannot be."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from quad_ident_ros.cluster import Done, TimeOver
+from quad_ident_ros.data.commands import BY_SPEEDS
+from quad_ident_ros.data.inertial import POSITION, VELOCITY
 from quad_ident_ros.data.thrust_level import FULL_SPEED
 from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.fleet.manifest import listed
 from quad_ident_ros.flight.fly import fly_closed_loop
+from quad_ident_ros.flight.measure import SENSORS
 from quad_ident_ros.model.vehicle import load_vehicle
 
 pytest.importorskip('pyarrow', reason="pyarrow is not installed: pip install '.[fleet]'")
@@ -18,6 +22,7 @@ import pyarrow  # noqa: E402, I100
 
 from quad_ident_ros.fleet import run, track  # noqa: E402, I100
 from quad_ident_ros.fleet.grouping import groups_of  # noqa: E402, I100
+from quad_ident_ros.fleet.insight import insight  # noqa: E402, I100
 from quad_ident_ros.fleet.look import look  # noqa: E402, I100
 from quad_ident_ros.fleet.plan import planned  # noqa: E402, I100
 from quad_ident_ros.fleet.store import keys_of, read_rows, write_rows  # noqa: E402, I100
@@ -78,6 +83,15 @@ def test_thrust_that_a_vehicle_does_not_name_has_the_form_of_the_fleet():
     assert found['c'] == {'thrust_scale': 'exponent', 'motor_lag': 'first_order'}
 
 
+@pytest.mark.parametrize('other', ['battery_sag', 'inertia_mismatch', 'inflow', 'ground_effect'])
+def test_thrust_is_tracked_beside_what_a_single_flight_tells_from_it(other):
+    """Else one verdict that names a battery which sags would hide a drift of the thrust."""
+    found = tracked(a=other, b=other, c='rotor_drag')
+    assert found['a'] == {other, 'thrust_scale'} and found['c'] == found['a'] | {'rotor_drag'}
+    usual = tracked(a='thrust_scale', b='thrust_scale', c=other)
+    assert usual['a'] == {'thrust_scale'} and usual['c'] == {other, 'thrust_scale'}
+
+
 @pytest.fixture
 def group(tmp_path):
     """Return a group of one flight, which is diagnosed and has drag in its verdict."""
@@ -121,6 +135,59 @@ def test_thrust_of_a_log_that_the_weight_scaled_takes_no_other_effect_with_it(
         rows = read_rows(tmp_path, 'parameters', tracking.key, ['effect', 'value'])
         assert [row['effect'] for row in rows] == [*effects][:-1]
         assert [row['value'] for row in rows] == pytest.approx([0.2] * len(rows), abs=0.02)
+
+
+@pytest.mark.slow
+def test_speeds_in_place_of_commands_take_no_effect_but_those_of_motors_with_them(
+        group, tmp_path, monkeypatch):
+    """The lag of the motors is tracked in all vehicles where most have it."""
+    record = fly_closed_loop(group.nominal, {'rotor_drag': {'coefficient': 0.2}}, 'figure8',
+                             duration=6.0)
+    record.info[BY_SPEEDS] = True
+    monkeypatch.setattr(track, 'load_all', lambda *_: [record])
+    tracking = Tracking(group, {'motor_lag': 'first_order', 'rotor_drag': 'by_speed'})
+    track.track(tracking, tmp_path)
+    row, = read_rows(tmp_path, 'parameters', tracking.key)
+    assert row['effect'] == 'rotor_drag' and row['value'] == pytest.approx(0.2, abs=0.02)
+
+
+@pytest.mark.parametrize('kind', ['scaled by the weight', 'without a pose'])
+def test_a_flight_that_can_show_nothing_is_no_log_to_check(group, tmp_path, monkeypatch, kind):
+    """Beside one of the same vehicle that shows thrust, such a log was called different."""
+    record = fly_closed_loop(group.nominal, {}, 'figure8', duration=5.0,
+                             noise=SENSORS['mocap_imu'])
+    if kind == 'scaled by the weight':
+        record.info[FULL_SPEED] = 1500.0
+    else:
+        record = replace(record, columns={name: values for name, values in record.columns.items()
+                                          if name not in (*POSITION, *VELOCITY)})
+    monkeypatch.setattr(track, 'load_all', lambda *_: [record])
+    tracking = Tracking(group, {'thrust_scale': 'factor'})
+    whose = {'group': 'other', 'vehicle': 'seven', 'configuration': '',
+             'date': group.flights[0].date}
+    write_rows(tmp_path, 'flights', 'other', [whose | {
+        'flight': name, 'path': f'{name}.csv', 'status': 'diagnosed'} for name in 'bc'])
+    write_rows(tmp_path, 'parameters', 'other', [whose | {
+        'flight': 'b', 'effect': 'thrust_scale', 'parameter': 'factor', 'unit': '1',
+        'value': 1.0, 'std': 0.001}])
+    assert {name for _, name, _ in insight(tmp_path).suspect} == {'a.csv', 'c.csv'}
+    track.track(tracking, tmp_path)
+    assert {name for _, name, _ in insight(tmp_path).suspect} == {'c.csv'}
+
+
+@pytest.mark.slow
+def test_a_single_flight_tells_thrust_from_a_battery_that_sags(group, tmp_path, monkeypatch):
+    """Without the thrust the battery would lose 0.33 per volt."""
+    record = fly_closed_loop(
+        group.nominal, {'battery_sag': {'per_volt': 0.05}, 'thrust_scale': {'factor': 0.97}},
+        'lissajous', duration=10.0, seed=3, noise=SENSORS['mocap_imu'])
+    monkeypatch.setattr(track, 'load_all', lambda *_: [record])
+    tracking = Tracking(group, {'battery_sag': 'voltage', 'thrust_scale': 'factor'})
+    track.track(tracking, tmp_path)
+    found = {row['parameter']: row for row in read_rows(tmp_path, 'parameters', tracking.key)}
+    assert found['factor']['value'] == pytest.approx(0.97, abs=0.002)
+    assert found['factor']['std'] < 0.001
+    assert found['per_volt']['value'] == pytest.approx(0.05, abs=0.012)
 
 
 def test_flights_that_are_not_where_a_worker_looks_are_fitted_by_the_next_run(group, tmp_path):
