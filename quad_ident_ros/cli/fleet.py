@@ -113,7 +113,7 @@ def run(options):
                      len(effects['vehicle'].unique()))
     groups = summary.groups
     faulty = (groups['failed'] or groups['timeout'] or summary.untracked or summary.gave_way
-              or summary.fruitless)
+              or summary.nothing_diagnosed)
     return FAULTY if faulty else 0
 
 

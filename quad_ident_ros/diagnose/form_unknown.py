@@ -11,6 +11,7 @@ from quad_ident_ros.diagnose.bench import Bench
 from quad_ident_ros.diagnose.candidates import Candidate
 from quad_ident_ros.diagnose.judgement import (
     explained_share,
+    in_standard_errors,
     Judgement,
     lost_shares,
     pooled,
@@ -93,8 +94,7 @@ def _action(bench: Bench, judged: Judgement, cause: Candidate,
 def in_errors(gained: np.ndarray, block: np.ndarray) -> float:
     """Return a sum over windows (B,) in standard errors by blocks (B,); 0 where one is all."""
     sums = np.bincount(block, gained)
-    error = np.std(sums) * np.sqrt(len(sums))
-    return float(np.sum(sums) / max(error, 1e-300)) if len(sums) > 1 else 0.0
+    return in_standard_errors(sums) if len(sums) > 1 else 0.0
 
 
 def _likeliest(values: np.ndarray, errors: np.ndarray, size: np.ndarray) -> np.ndarray:

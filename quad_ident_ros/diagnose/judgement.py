@@ -179,8 +179,12 @@ def stability(with_it: tuple, without: tuple, noise: dict, rules: Rules) -> floa
         block = np.unique((one.t // rules.steady_block).astype(int), return_inverse=True)[1]
         blocks.append(np.bincount(block, change))
     saved = np.concatenate(blocks)
-    error = np.std(saved) * np.sqrt(len(saved))
-    return float(np.sum(saved) / max(error, 1e-300))
+    return in_standard_errors(saved)
+
+
+def in_standard_errors(sums: np.ndarray) -> float:
+    """Return the total of sums over blocks of time, (K,), over its standard error."""
+    return float(np.sum(sums) / max(np.std(sums) * np.sqrt(len(sums)), 1e-300))
 
 
 def lost_shares(after: dict, without: dict, before: dict, noise: dict, rules: Rules) -> dict:

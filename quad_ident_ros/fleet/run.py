@@ -106,7 +106,7 @@ class Summary:
     together: tuple[str, ...] = ()
 
     @property
-    def fruitless(self) -> bool:
+    def nothing_diagnosed(self) -> bool:
         """
         Return whether the flights have no diagnosis, old or new, because all were refused.
 

@@ -192,7 +192,7 @@ def summary_text(summary: Summary, out: str | Path) -> str:
         lines.append(f'{counted(count, "group")} failed, and the older results of '
                      f'{"its" if count == 1 else "their"} flights stay until there are new ones: '
                      f'{"; ".join(summary.stayed[:3])}' + (' ...' if count > 3 else ''))
-    if summary.fruitless:
+    if summary.nothing_diagnosed:
         lines.append(f'no flight could be diagnosed; the column reason of {out}/flights says what '
                      'is wrong with each of those refused: mend them, or name other flights')
     if failed := groups['failed'] + groups['timeout']:
