@@ -21,7 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import logsumexp
 
-from quad_ident_ros.fleet.regression import Posterior, Regression, Term, Terms
+from quad_ident_ros.fleet.regression import Known, Posterior, Regression, Term, Terms, WIDTHS
 
 SURE = 0.95
 """Probability from which on a change, a drift or an odd vehicle is reported."""
@@ -103,6 +103,19 @@ class Drift:
 
 
 @dataclass(frozen=True, eq=False)
+class Coefficients:
+    """
+    The coefficients of the covariates of a Series, with standard errors: each (2, A).
+
+    First beside what was found in it; then beside a slope, too, however improbable: what drifts
+    and is not found then takes nothing from a covariate that goes with time.
+    """
+
+    values: np.ndarray
+    errors: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
 class History:
     """
     What a Series says.
@@ -110,7 +123,7 @@ class History:
     odd: numbers of the flights that are off by themselves; level, std: what the parameter is at
     the last flight, of usual covariates and on a usual day; scatter: of single flights, beside the
     standard errors; day_scatter: of days, 0 where it cannot be distinguished from scatter or from
-    level; course (N,): level, slope and steps along the flights.
+    level; course (N,): level, slope and steps along the flights; coefficients of its covariates.
     """
 
     series: Series
@@ -122,18 +135,28 @@ class History:
     scatter: float
     day_scatter: float
     course: np.ndarray
+    coefficients: Coefficients
+
+
+def before_looking(series: Sequence[Series]) -> tuple[float, float]:
+    """
+    Return the probabilities of a change between two flights and of a drift of a Series.
+
+    What is expected is shared among all.
+    """
+    places = sum(max(len(one.values) - 1, 0) for one in series)
+    return (min(EVENTS / 2.0 / max(places, 1), MOST_OFTEN),
+            min(EVENTS / 2.0 / max(len(series), 1), MOST_OFTEN))
 
 
 def histories(series: Sequence[Series], on_progress: Callable[[int, int], None] = (
         lambda done, total: None)) -> tuple[History, ...]:
     """
-    Return the History of each Series; what is expected before looking is shared among all.
+    Return the History of each Series by itself, with what is expected before looking of all.
 
     on_progress is called before each with how many are done, of how many.
     """
-    places = sum(max(len(one.values) - 1, 0) for one in series)
-    change = min(EVENTS / 2.0 / max(places, 1), MOST_OFTEN)
-    drift = min(EVENTS / 2.0 / max(len(series), 1), MOST_OFTEN)
+    change, drift = before_looking(series)
     made: list[History] = []
     for one in series:
         on_progress(len(made), len(series))
@@ -141,22 +164,24 @@ def histories(series: Sequence[Series], on_progress: Callable[[int, int], None] 
     return tuple(made)
 
 
-def history(series: Series, change: float, drift: float) -> History:
+def history(series: Series, change: float, drift: float, known: Known | None = None) -> History:
     """
     Return the History of a Series.
 
-    Args: change: probability of a change between two flights, drift: of a drift, before looking.
+    Args: change: probability of a change between two flights, drift: of a drift, before looking;
+    known: of the coefficients of its covariates, by default nothing.
     """
     always = _with_season(series)
     terms = _terms(series, change, drift)
-    model = Regression(series.values, series.errors, always, terms, series.days)
+    model = Regression(series.values, series.errors, always, terms, series.days,
+                       known and _of_all(known, always.shape[1]))
     _, chosen = model.search() if len(series.values) >= LEAST else (0.0, ())
-    known = model.posterior(chosen)
+    found = model.posterior(chosen)
     before = 1 + always.shape[1]
     changes, slope, odd = [], None, []
     for number, term in enumerate(chosen):
         kind, place = terms.kind[term.number], int(terms.place[term.number])
-        value, error = _coefficient(known, before + number)
+        value, error = _coefficient(found, before + number)
         if kind == SINGLE:
             odd.append(place)
             continue
@@ -174,9 +199,10 @@ def history(series: Series, change: float, drift: float) -> History:
     design = model.design(chosen)[:, lasting]
     row = design[-1]
     return History(series, tuple(sorted(changes, key=lambda one: one.place)), slope,
-                   tuple(sorted(odd)), float(row @ known.mean[lasting]),
-                   float(np.sqrt(row @ known.covariance[np.ix_(lasting, lasting)] @ row)),
-                   known.scatter, known.day_scatter, design @ known.mean[lasting])
+                   tuple(sorted(odd)), float(row @ found.mean[lasting]),
+                   float(np.sqrt(row @ found.covariance[np.ix_(lasting, lasting)] @ row)),
+                   found.scatter, found.day_scatter, design @ found.mean[lasting],
+                   _coefficients(model, chosen, len(series.names)))
 
 
 def _terms(series: Series, change: float, drift: float) -> Terms:
@@ -204,6 +230,26 @@ def _with_season(series: Series) -> np.ndarray:
         return series.covariates
     angle = 2.0 * np.pi * series.t / YEAR
     return np.column_stack([series.covariates, np.sin(angle), np.cos(angle)])
+
+
+def _of_all(known: Known, count: int) -> Known:
+    """Return what is known of so many coefficients: of a season, which comes last, nothing."""
+    more = (0, 0), (0, count - known.mean.shape[1])
+    return Known(np.pad(known.mean, more), np.pad(known.std, more, constant_values=np.inf),
+                 known.log_share)
+
+
+def _coefficients(model: Regression, chosen: Sequence[Term], count: int) -> Coefficients:
+    """Return the Coefficients of so many covariates, beside the set of terms that was chosen."""
+    slopes = np.flatnonzero(model.terms.kind == SLOPE)
+    drifting = any(term.number in slopes for term in chosen) or not slopes.size
+    # As wide as any: what is known of a slope does not draw it to zero.
+    sets = chosen, chosen if drifting else (*chosen, Term(int(slopes[0]), len(WIDTHS) - 1))
+    of_covariates = slice(1, 1 + count)
+    found = [model.posterior(terms) for terms in sets]
+    return Coefficients(
+        np.array([one.mean[of_covariates] for one in found]),
+        np.sqrt([np.diag(one.covariance)[of_covariates] for one in found]))
 
 
 def _half_span(t: np.ndarray) -> float:

@@ -15,8 +15,9 @@ import pyarrow.compute as pc
 from quad_ident_ros import __version__
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.fleet.events import Event, events, matters
-from quad_ident_ros.fleet.history import histories, History
+from quad_ident_ros.fleet.history import History
 from quad_ident_ros.fleet.series import comparable, series_of
+from quad_ident_ros.fleet.shared import shared_histories
 from quad_ident_ros.fleet.sisters import Sister, Sisters, sisters
 from quad_ident_ros.fleet.store import read_table
 from quad_ident_ros.fleet.work import DIAGNOSED, FAILED, REFUSED, TIMEOUT
@@ -137,7 +138,7 @@ def insight(out: str | Path, on_progress: Callable[[int, int], None] = lambda do
     flights = read_table(out, 'flights', FLIGHTS)
     rows = read_table(out, 'groups', GROUPS).to_pylist()
     parameters, apart = comparable(parameters, {row['group']: row['nominal'] for row in rows})
-    found = histories(series_of(parameters, flights), on_progress)
+    found = shared_histories(series_of(parameters, flights), on_progress)
     beside = sisters(found)
     named = {(row['vehicle'], effect) for row in rows for effect in row['verdict'] or ()}
     status: dict[str, int] = {}

@@ -5,9 +5,10 @@ Which terms a regression of values with standard errors needs, and how probable 
 
 A value is normal about the sum of the terms, with its standard error and, beside it, scatters
 that are the same for all values and are not known (see Scatter): standard errors that are too
-small make nothing sure. The evidence of a set of terms is a closed form at each scatter and width,
-and is summed over both (Bayesian model choice with conjugate priors; J. M. Bernardo and A. F. M.
-Smith, Bayesian Theory, 1994, section 6.1).
+small make nothing sure. The evidence of a set of terms is a closed form at each scatter, at each
+width and at each alternative of what is known of coefficients, and is summed over all of them
+(Bayesian model choice with conjugate priors; J. M. Bernardo and A. F. M. Smith, Bayesian Theory,
+1994, section 6.1).
 """
 
 from collections.abc import Collection, Iterable
@@ -24,7 +25,7 @@ Prior standard deviations of a term, in errors of one value: what concerns anybo
 that error, and a wrong log may be off by hundreds.
 """
 ALWAYS = 30.0
-"""The same of the terms that are always in: covariates."""
+"""The same of the terms that are always in, covariates, where nothing better is known."""
 LEVEL = 1e4
 """The same for the level, which has no prior value. All sets have it alike."""
 NEGLIGIBLE = -40.0  # log: what is less than this share of a sum changes none of its 16 digits
@@ -43,6 +44,20 @@ class Terms:
     log_odds: np.ndarray
     kind: np.ndarray
     place: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Known:
+    """
+    What is known beforehand of the coefficients of terms that are always in: C alternatives.
+
+    mean, std (C, A): normal, the standard deviation no more than ALWAYS; log_share (C,): log of
+    the probability of each alternative.
+    """
+
+    mean: np.ndarray
+    std: np.ndarray
+    log_share: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -72,22 +87,37 @@ class Regression:
     """
     Values (N,) with standard errors (N,), columns (N, A) that are always in, and Terms.
 
-    days (N,): which day each value is of, see Scatter; scatters, day_scatters (P,): of single
-    values and of days, at the points of its grid.
+    days (N,): which day each value is of, see Scatter; known: of the coefficients of `always`, by
+    default nothing. Its C alternatives times the G points of the grid of Scatter are the P points
+    that are summed over; scatters, day_scatters (P,): of single values and of days, at them.
     """
 
     def __init__(self, values: np.ndarray, errors: np.ndarray, always: np.ndarray,
-                 terms: Terms, days: np.ndarray | None = None) -> None:
+                 terms: Terms, days: np.ndarray | None = None, known: Known | None = None
+                 ) -> None:
         self.terms = terms
         self._scatter = Scatter(values, errors, days)
-        self.scatters, self.day_scatters = self._scatter.singles, self._scatter.days
-        self._level = float(np.median(values))
         self._always = np.column_stack([np.ones(len(values)), always])
         self._columns = np.column_stack([self._always, terms.columns])
-        centred = values - self._level
-        self._along = self._scatter.products(centred, self._columns)
+        if known is None:
+            known = Known(np.zeros((1, always.shape[1])), np.full((1, always.shape[1]), np.inf),
+                          np.zeros(1))
+        self._alternatives = count = len(known.log_share)
+        self.scatters = np.tile(self._scatter.singles, count)
+        self.day_scatters = np.tile(self._scatter.days, count)
+        grid = len(self._scatter.prior)
+        self._error = np.tile(self._scatter.error, count)
+        self._prior = (known.log_share[:, None] + self._scatter.prior).ravel()
+        level = np.full((count, 1), float(np.median(values)))
+        self._start = np.repeat(np.column_stack([level, known.mean]), grid, axis=0)
+        self._given = np.column_stack([
+            LEVEL * self._error, np.minimum(ALWAYS * self._error[:, None],
+                                            np.repeat(known.std, grid, axis=0))])
+        centred = values[:, None] - self._always @ np.column_stack([level, known.mean]).T
+        self._along = np.concatenate([self._scatter.products(one, self._columns)
+                                      for one in centred.T])
         self._squares = self._scatter.squares(self._columns)
-        self._whole = self._scatter.squares(centred[:, None])[:, 0]
+        self._whole = self._scatter.squares(centred).T.ravel()
         # What is worked out once: a search asks for the same again and again.
         self._rows: dict[int, np.ndarray] = {}
         self._scores: dict[frozenset, float] = {}
@@ -140,7 +170,7 @@ class Regression:
         evidence, inverse, solved = self._evidence(chosen)
         covariances = np.swapaxes(inverse, 1, 2) @ inverse
         means = (solved[:, None] @ inverse)[:, 0]
-        means[:, 0] += self._level
+        means[:, :self._start.shape[1]] += self._start
         return np.exp(evidence - logsumexp(evidence)), means, covariances
 
     def probability(self, numbers: np.ndarray, chosen: Collection[Term], term: Term,
@@ -201,18 +231,18 @@ class Regression:
         The inverse (P, M, M) of Cholesky's factor of the precision; it times the values (P, M).
         """
         numbers = self._numbers(chosen)
-        given = np.array([LEVEL, *np.full(self._always.shape[1] - 1, ALWAYS),
-                          *(WIDTHS[term.width] for term in chosen)])
-        prior = (given * self._scatter.error[:, None]) ** -2.0
+        widths = np.array([WIDTHS[term.width] for term in chosen])
+        prior = np.column_stack([self._given, widths * self._error[:, None]]) ** -2.0
         precision = np.stack([self._row(number)[:, numbers] for number in numbers], axis=1)
-        precision = precision + prior[:, :, None] * np.eye(len(numbers))
+        precision = (np.tile(precision, (self._alternatives, 1, 1))
+                     + prior[:, :, None] * np.eye(len(numbers)))
         factor = np.linalg.cholesky(precision)
         inverse = np.linalg.inv(factor)
         solved = (inverse @ self._along[:, numbers, None])[..., 0]
         logs = 2.0 * np.sum(np.log(np.einsum('gii->gi', factor)), axis=1)
-        evidence = self._scatter.prior + 0.5 * (
-            self._scatter.determinant + np.sum(np.log(prior), axis=1) - logs - self._whole
-            + np.sum(solved ** 2, axis=1))
+        evidence = self._prior + 0.5 * (
+            np.tile(self._scatter.determinant, self._alternatives)
+            + np.sum(np.log(prior), axis=1) - logs - self._whole + np.sum(solved ** 2, axis=1))
         return evidence, inverse, solved
 
     def _gains(self, chosen: Collection[Term]) -> np.ndarray:
@@ -220,12 +250,14 @@ class Regression:
         always = self._always.shape[1]
         shared = np.stack([self._row(number)[:, always:] for number in self._numbers(chosen)],
                           axis=1)
-        shared = inverse @ shared
-        power = self._squares[:, always:] - np.einsum('pmk,pmk->pk', shared, shared)
+        each = inverse.reshape(self._alternatives, -1, *inverse.shape[1:])
+        shared = (each @ shared).reshape(len(inverse), *shared.shape[1:])
+        power = (np.tile(self._squares[:, always:], (self._alternatives, 1))
+                 - np.einsum('pmk,pmk->pk', shared, shared))
         power = np.maximum(power, 0.0)
         along = self._along[:, always:] - (solved[:, None] @ shared)[:, 0]
         evidence = (evidence - logsumexp(evidence))[:, None]
-        widths = (np.array(WIDTHS) * self._scatter.error[:, None]) ** 2      # (P, W)
+        widths = (np.array(WIDTHS) * self._error[:, None]) ** 2      # (P, W)
         # A term raises a point by no more than this, and is worth what it is at the best one.
         most = evidence + 0.5 * along ** 2 / (1.0 / widths[:, -1:] + power)
         best = [int(np.argmax(evidence))]
@@ -242,7 +274,7 @@ class Regression:
         return [*range(always), *(always + term.number for term in chosen)]
 
     def _row(self, number: int) -> np.ndarray:
-        """Return the products (P, A + K) of a column with all columns."""
+        """Return the products (G, A + K) of a column with all columns."""
         if number not in self._rows:
             self._rows[number] = self._scatter.products(
                 self._columns[:, number], self._columns)

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from quad_ident_ros.fleet.history import EVENTS, History, MOST_OFTEN, SURE
+from quad_ident_ros.fleet.history import EVENTS, History, MOST_OFTEN, Series, SURE
 from quad_ident_ros.fleet.regression import Regression, Term, Terms
 
 LEAST = 4
@@ -69,20 +69,33 @@ class Sisters:
 
 def sisters(found: Sequence[History]) -> tuple[Sisters, ...]:
     """Return the Sisters of each parameter and configuration, also of a vehicle that has none."""
-    together: dict[tuple, list[History]] = {}
-    for one in found:
-        key = one.series.configuration, one.series.effect, one.series.parameter
-        together.setdefault(key, []).append(one)
-    count = sum(len(some) for some in together.values() if len(some) > 1)
-    odd = min(EVENTS / max(count, 1), MOST_OFTEN)
+    together = alike([one.series for one in found])
+    odd = oddness(together)
     made = []
-    for (configuration, effect, parameter), some in together.items():
+    for numbers in together:
+        some = [found[number] for number in numbers]
+        first = some[0].series
         mean, mean_std, spread, vehicles = pooled(
             tuple(one.series.vehicle for one in some), np.array([one.level for one in some]),
             np.array([one.std for one in some]), odd)
-        made.append(Sisters(configuration, effect, parameter, some[0].series.unit, mean, mean_std,
-                            spread, vehicles))
+        made.append(Sisters(first.configuration, first.effect, first.parameter, first.unit, mean,
+                            mean_std, spread, vehicles))
     return tuple(made)
+
+
+def alike(series: Sequence[Series]) -> tuple[tuple[int, ...], ...]:
+    """Return the numbers of Series of sisters together: of one parameter and configuration."""
+    together: dict[tuple[str, ...], list[int]] = {}
+    for number, one in enumerate(series):
+        key = one.configuration, one.effect, one.parameter
+        together.setdefault(key, []).append(number)
+    return tuple(map(tuple, together.values()))
+
+
+def oddness(together: Sequence[Sequence[int]]) -> float:
+    """Return the probability that one of `alike` is odd, before looking."""
+    count = sum(len(some) for some in together if len(some) > 1)
+    return min(EVENTS / max(count, 1), MOST_OFTEN)
 
 
 def pooled(names: Sequence[str], values: np.ndarray, errors: np.ndarray, odd: float
@@ -97,10 +110,7 @@ def pooled(names: Sequence[str], values: np.ndarray, errors: np.ndarray, odd: fl
         value, error = float(values[0]), float(errors[0])
         return value, error, 0.0, (Sister(names[0], value, error, value, error, 0.0, error, 0.0,
                                           0.0),)
-    terms = Terms(np.eye(count), np.full(count, np.log(odd / (1.0 - odd))),
-                  np.full(count, 'odd'), np.arange(count))
-    model = Regression(values, errors, np.zeros((count, 0)), terms)
-    chosen = model.search()[1] if count >= LEAST else ()
+    model, chosen = _model(values, errors, odd)
     known = model.posterior(chosen)
     vehicles = []
     for place, name in enumerate(names):
@@ -110,9 +120,40 @@ def pooled(names: Sequence[str], values: np.ndarray, errors: np.ndarray, odd: fl
         value, error = float(values[place]), float(errors[place])
         drawn, drawn_std = (value, error) if alone else _drawn(model, chosen, value, error)
         vehicles.append(Sister(name, value, error, drawn, drawn_std,
-                               *_beside(values, errors, place, rest, terms), probability))
+                               *_beside(values, errors, place, model, chosen), probability))
     return (float(known.mean[0]), float(np.sqrt(known.covariance[0, 0])), known.scatter,
             tuple(vehicles))
+
+
+def expected(values: np.ndarray, errors: np.ndarray, odd: float
+             ) -> tuple[np.ndarray, np.ndarray]:
+    """
+    Return what each vehicle's value (V,) would be by those of the others, and how exactly (V,).
+
+    Its standard deviation has the error of their mean and their spread, over all spreads. Args:
+    values, errors (V,) of LEAST vehicles or more; odd: probability that one is odd, before
+    looking. Of three others it is wide: with a spread that may be any the posterior is proper from
+    three on (A. Gelman, Bayesian Analysis 1, 2006).
+    """
+    model, chosen = _model(values, errors, odd)
+    means, stds = [], []
+    for place in range(len(values)):
+        others, terms = _others(values, errors, place, model, chosen)
+        known = others.posterior(terms)
+        shares = others.coefficients(terms)[0]
+        means.append(known.mean[0])
+        stds.append(np.sqrt(known.covariance[0, 0] + shares @ others.scatters ** 2))
+    return np.array(means), np.array(stds)
+
+
+def _model(values: np.ndarray, errors: np.ndarray, odd: float
+           ) -> tuple[Regression, tuple[Term, ...]]:
+    """Return the Regression of values (V,) about their mean, and which of them are odd."""
+    count = len(values)
+    terms = Terms(np.eye(count), np.full(count, np.log(odd / (1.0 - odd))),
+                  np.full(count, 'odd'), np.arange(count))
+    model = Regression(values, errors, np.zeros((count, 0)), terms)
+    return model, model.search()[1] if count >= LEAST else ()
 
 
 def _oddness(model: Regression, chosen: Sequence[Term], place: int) -> float:
@@ -134,15 +175,23 @@ def _drawn(model: Regression, chosen: Sequence[Term], value: float, error: float
     return mean, float(np.sqrt(shares @ (squares + (drawn - mean) ** 2)))
 
 
-def _beside(values: np.ndarray, errors: np.ndarray, place: int, rest: Sequence[Term],
-            terms: Terms) -> tuple[float, float, float]:
+def _beside(values: np.ndarray, errors: np.ndarray, place: int, model: Regression,
+            chosen: Sequence[Term]) -> tuple[float, float, float]:
     """Return how far a value is from the mean of the others, the error of that, and in spreads."""
-    others = np.arange(len(values)) != place
-    kept = [term.number for term in rest]
-    columns = terms.columns[np.ix_(others, kept)]
-    model = Regression(values[others], errors[others], np.zeros((others.sum(), 0)),
-                       Terms(columns, terms.log_odds[kept], terms.kind[kept], terms.place[kept]))
-    known = model.posterior(tuple(Term(number, term.width) for number, term in enumerate(rest)))
+    others, terms = _others(values, errors, place, model, chosen)
+    known = others.posterior(terms)
     off = float(values[place] - known.mean[0])
     error = float(np.hypot(errors[place], np.sqrt(known.covariance[0, 0])))
     return off, error, off / float(np.hypot(error, known.scatter))
+
+
+def _others(values: np.ndarray, errors: np.ndarray, place: int, model: Regression,
+            chosen: Sequence[Term]) -> tuple[Regression, tuple[Term, ...]]:
+    """Return the Regression of all values but one, and which of them are odd."""
+    others = np.arange(len(values)) != place
+    rest = [term for term in chosen if term.number != place]
+    kept, terms = [term.number for term in rest], model.terms
+    without = Regression(values[others], errors[others], np.zeros((others.sum(), 0)), Terms(
+        terms.columns[np.ix_(others, kept)], terms.log_odds[kept], terms.kind[kept],
+        terms.place[kept]))
+    return without, tuple(Term(number, term.width) for number, term in enumerate(rest))

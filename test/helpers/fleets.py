@@ -50,6 +50,38 @@ def in_days(rng, days, each, *, apart=0.0, error=0.3, **options):
     return series(values, error, days=day + np.tile(np.arange(each), days) / 24.0, **options)
 
 
+DENSITY = 1.0 / 288.0       # share of its thrust that a rotor loses in air a degree warmer
+WEEK = 7 * DAY
+
+
+def in_spring(rng, vehicles, flights, *, weather=3.0, follows=(), wrong=0.0):
+    """
+    Return Series of the thrust of steady vehicles, twice a week in a spring that gets warmer.
+
+    Args: weather: standard deviation (degrees C) of days about the season; follows: how much of
+    the thrust that air takes the first vehicles lose, all others 1; wrong: standard deviation of
+    the temperature that is told.
+    """
+    days, warm, told, values = [], [], [], []
+    for number in range(vehicles):
+        days.append(3.5 * np.arange(flights) + rng.uniform(0.0, 1.0, flights))
+        warm.append(10.0 * np.sin(2.0 * np.pi * (days[-1] - 40.0) / 365.25)
+                    + weather * rng.standard_normal(flights))
+        told.append(warm[-1] + wrong * rng.standard_normal(flights))
+        share = follows[number] if number < len(follows) else 1.0
+        values.append(1.0 + 0.01 * rng.standard_normal() - DENSITY * share * warm[-1]
+                      + 0.004 * rng.standard_normal(flights))
+    usual, apart = np.mean(told), np.std(told)
+    return [series(values[number], 1.5e-4, days=days[number], vehicle=f'uav{number}',
+                   covariates=(told[number][:, None] - usual) / apart)
+            for number in range(vehicles)]
+
+
+def drift(one, per_week):
+    """Let the values of a Series drift from its first flight on."""
+    one.values[:] += per_week * (one.t - one.t[0]) / WEEK
+
+
 TRACKED = {('rotor_drag', 'coefficient'): ('kg/s', 0.06, 0.004, 0.001),
            ('com_offset', 'x'): ('m', 0.0, 5e-4, 2e-4),
            ('thrust_scale', 'factor'): ('1', 1.0, 0.01, 0.004)}
