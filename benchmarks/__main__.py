@@ -21,10 +21,10 @@ SECTIONS = {'p1': 'performance.md', 'p2': 'performance.md', 'p3': 'performance.m
             'scaling': 'performance.md', 'limit': 'performance.md', 'start': 'performance.md',
             'accuracy': 'accuracy.md', 'rollout': 'performance.md',
             'diagnosis': 'performance.md', 'graph': 'performance.md', 'long': 'performance.md',
-            'fleet': 'performance.md', 'days': 'fleet.md',
+            'fleet': 'performance.md', 'days': 'fleet.md', 'spring': 'fleet.md',
             'cautions': 'reliability.md', 'changes': 'reliability.md'}
 # Only where they are asked for, one at a time, as the program is installed, see run.
-APART = ('accuracy', 'graph', 'long', 'fleet', 'days', 'cautions', 'changes')
+APART = ('accuracy', 'graph', 'long', 'fleet', 'days', 'spring', 'cautions', 'changes')
 ALL_CORES = ('accuracy', 'graph', 'fleet', 'cautions', 'changes')     # all but `graph` by Dask
 PACKAGES = ('numpy', 'scipy', 'numba', 'pyswarms', 'mealpy', 'nevergrad', 'cma', 'pymoo',
             'sippy-unipi', 'rotorpy', 'distributed', 'pyarrow', 'mujoco', 'ros-jazzy-rclpy')

@@ -19,7 +19,7 @@ class Size:
     together; long_flight: s of each long one; clean_flights: of each noise that are checked;
     change_flights: with a change of the vehicle, and as many without; fleet_flights: that a fleet
     has, light_flights: of a fleet that are refused at once; day_fleets: whose flights share days,
-    of each kind.
+    of each kind; spring_fleets: that fly in one spring, of each kind.
     """
 
     draws: int = 30
@@ -40,9 +40,11 @@ class Size:
     fleet_flights: int = 100
     light_flights: int = 10_000
     day_fleets: int = 40
+    spring_fleets: int = 100
 
 
 QUICK = Size(draws=3, share_draws=4, seconds=1.0, long_runs=1, long_budget=20_000,
              long_seconds=2.0, largest=50_000, accuracy_draws=(10, 20), flight=8.0,
              rollouts=3, diagnoses=3, real_flights=2, long_flight=60.0, clean_flights=4,
-             change_flights=4, fleet_flights=4, light_flights=200, day_fleets=2)
+             change_flights=4, fleet_flights=4, light_flights=200, day_fleets=2,
+             spring_fleets=2)
