@@ -31,6 +31,8 @@ _COMMA = re.compile(r'[-+]?[\d.]*,\d*(?:[eE][-+]?\d+)?')
 _POINT = re.compile(r'[-+]?(?:0?\.\d+|\d+\.(?!\d{3}$)\d+)(?:[eE][-+]?\d+)?|[-+]?\d.*,.*\.\d*')
 """Numbers with a decimal comma; with a point that is decimal, for it does not part thousands."""
 
+_NUMBER = re.compile(r'\s*[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?\s*')
+
 _MISSING = frozenset(('none', 'null', 'n/a', 'na', '-', '--'))
 
 
@@ -143,8 +145,10 @@ def separator_in(rows: list[str]) -> str:
         counts = Counter(row.count(separator) for row in rows[:_HEAD])
         count, lines = counts.most_common(1)[0] if counts else (0, 0)
         # Decimal commas are as many as cells at most, and the header has none of them.
-        share = count * lines if rows and rows[0].count(separator) else 0
-        if share > most_of:
+        share = count * lines
+        if share > most_of and any(
+                abs(row.count(separator) - count) <= 1 and (row is rows[0] or not any(map(
+                    _NUMBER.fullmatch, row.split(separator)))) for row in rows[:_HEAD]):
             best, most_of = separator, share
     if not most_of and len(rows) > 2:       # as the tables of trajectories are
         cells = Counter(len(row.split()) for row in rows[1:_HEAD])
