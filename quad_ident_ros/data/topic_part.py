@@ -15,13 +15,16 @@ from quad_ident_ros.data import frames
 from quad_ident_ros.data.mapping import Actuators, in_record_unit, Mapping, rotor_speeds, Source
 from quad_ident_ros.data.message import Message
 from quad_ident_ros.data.message_roles import (
+    Absent,
     at_path,
     is_px4,
     is_tf,
+    LISTS_OF_POSES,
     NoSuch,
     Reading,
     reading_of,
     ROLES_OF,
+    selects,
     shaped,
     stamp_of,
     stamps_of,
@@ -130,7 +133,8 @@ class TopicPart:
         None where messages with columns in place of numbers cannot be read: of transforms each has
         those that it has, and angles become a quaternion one by one.
         """
-        if is_tf(self._type) or (self.role == 'attitude' and self.source.unit):
+        if (is_tf(self._type) or (self.role == 'attitude' and self.source.unit)
+                or selects(self.source.field) or self._type in LISTS_OF_POSES):
             return None
         return self._reading.fixed if self._reading else ()
 
@@ -193,6 +197,9 @@ class TopicPart:
         self._messages += 1
         try:
             return [self._one(part, kind) for part in self._parts(message, kind)]
+        except Absent as error:
+            self.refused = f'{self._here()}: {error}'
+            return []
         except NoSuch as error:
             raise InputError(f'{self._here()}: {error}') from None
         except OTHER_SHAPE:
@@ -264,6 +271,8 @@ class TopicPart:
         if self.is_tf:
             self._compose()
         if not self._numbers:
+            if self.refused:
+                raise InputError(self.refused)
             child = f' with child_frame_id {self.source.child}' if self.source.child else ''
             raise InputError(f'{self._where}: there is no such topic in this bag, or nothing on '
                              f'it{child}; see what there is with: quad_ident info')
