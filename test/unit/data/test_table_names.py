@@ -10,7 +10,7 @@ from table_files import FORCE, named, PLACE, Q, RATE, SPEED, table
 from table_files import others as named_otherwise
 
 from quad_ident_ros.api import load_vehicle, SENSORS, simulate
-from quad_ident_ros.data.load import load
+from quad_ident_ros.data.load import load, load_all
 
 FLIGHT = flight(seconds=6.0, noise=0.3)
 HOVER = simulate(load_vehicle('hummingbird'), {}, 'hover', duration=12.0, seed=3,
@@ -160,3 +160,45 @@ def test_a_speed_that_is_measured_may_stand_behind_numbered_rates(tmp_path):
     columns = renamed('gyro', ('w1', 'w2', 'w3')) | {
         f'rpm{k}': FLIGHT.columns[f'cmd{k}'] * 30 / np.pi for k in range(1, 5)}
     assert load(table(tmp_path, columns)).has('rotor4')
+
+
+@pytest.mark.parametrize('separator, form', [
+    (',', '"[{}, {}, {}]"'), (',', '"[{} {}  {}]"'), (';', '[{}, {}, {}]'),
+    ('\t', '({}, {}, {})')])
+def test_lists_in_cells_are_columns(tmp_path, separator, form):
+    """Scripts that write arrays make them; there was no line of numbers in such a table."""
+    columns = {name: values for name, values in named_otherwise(FLIGHT).items()
+               if not name.startswith('pos_')}
+    lines = table(tmp_path, columns, separator=separator).read_text().splitlines()
+    place = [form.format(*row) for row in FLIGHT.stack(*PLACE).tolist()]
+    place[3] = ''
+    path = tmp_path / 'lists.csv'
+    path.write_text('\n'.join(f'{line}{separator}{cell}' for line, cell in zip(
+        lines, ['pos', *place], strict=True)) + '\n')
+    read = load(path)
+    np.testing.assert_allclose(read.stack(*PLACE), FLIGHT.stack(*PLACE), atol=2e-3)
+
+
+def test_units_in_brackets_are_no_lists(tmp_path):
+    path = table(tmp_path, named_otherwise(FLIGHT))
+    head, *rows = path.read_text().splitlines()
+    units = ','.join('[us]' if name == 'timestamp' else '[m]' if name.startswith('pos') else '[-]'
+                     for name in head.split(','))
+    path.write_text('\n'.join([head, units, *rows]) + '\n')
+    same(path, 'pos')
+
+
+def test_lists_that_lack_rows_and_categories_in_parquet(tmp_path):
+    """The former were left out, and the rows of two vehicles were one flight."""
+    pyarrow = pytest.importorskip('pyarrow', reason='pyarrow is not installed')
+    from pyarrow import parquet
+    columns = {name: pyarrow.array(np.tile(values, 2)) for name, values in
+               named_otherwise(FLIGHT).items() if name not in ('m1', 'm2', 'm3', 'm4')}
+    motors = np.column_stack([named_otherwise(FLIGHT)[f'm{k}'] for k in range(1, 5)]).tolist()
+    columns['pwm'] = pyarrow.array([row if k % 2 else None for k, row in enumerate(2 * motors)])
+    columns['vehicle'] = pyarrow.array(np.repeat(['a', 'b'], len(FLIGHT))).dictionary_encode()
+    path = tmp_path / 'f.parquet'
+    parquet.write_table(pyarrow.table(columns), path)
+    first, second = load_all(path)
+    assert first.info['hardware'] == {'vehicle': 'a'} and second.has('output4')
+    np.testing.assert_allclose(second.stack('output1', 'output2'), np.array(motors)[1::2, :2])
