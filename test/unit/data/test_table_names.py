@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tables whose columns are named, or whose units are left out, as scripts of people do it."""
 
+from dataclasses import replace
+
 from flightmaker import flight, ned, VEHICLE, world_velocity_in_body
 import numpy as np
 import pytest
@@ -10,7 +12,9 @@ from table_files import FORCE, named, PLACE, Q, RATE, SPEED, table
 from table_files import others as named_otherwise
 
 from quad_ident_ros.api import load_vehicle, SENSORS, simulate
+from quad_ident_ros.cli.main import main
 from quad_ident_ros.data.load import load, load_all
+from quad_ident_ros.data.mapping import load_mapping
 
 FLIGHT = flight(seconds=6.0, noise=0.3)
 HOVER = simulate(load_vehicle('hummingbird'), {}, 'hover', duration=12.0, seed=3,
@@ -202,3 +206,21 @@ def test_lists_that_lack_rows_and_categories_in_parquet(tmp_path):
     first, second = load_all(path)
     assert first.info['hardware'] == {'vehicle': 'a'} and second.has('output4')
     np.testing.assert_allclose(second.stack('output1', 'output2'), np.array(motors)[1::2, :2])
+
+
+@pytest.mark.parametrize('names, span', [
+    (('motor_front_left', 'motor_rear_left', 'motor_rear_right', 'motor_front_right'), 1.0),
+    (('motor.m4', 'motor.m3', 'motor.m2', 'motor.m1'), 65535.0)])
+def test_the_mapping_to_begin_with_keeps_the_places_of_motors(tmp_path, names, span):
+    """Its outputs were taken in the order of the file, and the flight was another one."""
+    speeds = FLIGHT.stack('cmd4', 'cmd3', 'cmd2', 'cmd1')
+    columns = {name: values for name, values in named_otherwise(FLIGHT).items()
+               if name[0] != 'm'} | named(names, np.round(span * (speeds - 100) / 1600, 9))
+    columns |= {name: np.round(columns[name]) for name in names if span > 1.0}
+    path, out = table(tmp_path, columns), tmp_path / 'map.yaml'
+    turned = replace(VEHICLE, rotors=(*VEHICLE.rotors[2:], *VEHICLE.rotors[:2]))
+    assert main(['info', str(path), '--write-mapping', str(out)]) == 0
+    for mapping in (None, load_mapping(out)):
+        read = load(path, mapping, turned)
+        np.testing.assert_allclose(read.stack('cmd3', 'cmd4', 'cmd1', 'cmd2'),
+                                   FLIGHT.stack('cmd1', 'cmd2', 'cmd3', 'cmd4'), atol=0.02)
