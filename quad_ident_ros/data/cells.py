@@ -8,7 +8,7 @@ import csv
 import io
 import re
 
-SEPARATORS = (',', ';', '\t')
+SEPARATORS = (',', ';', '\t', '|')
 BLANKS = ' '    # any number of them
 HEAD = 20       # lines in which the first numbers come
 MOST_ENTRIES = 16   # of a list in a cell: a pose with its attitude has 7, a matrix 16
@@ -53,7 +53,7 @@ def unrolled(rows: Sequence[str], separator: str = '') -> list[str]:
     Lists are as Python and NumPy print them, [0.1, 0.2] or [0.1 0.2]; their columns are named
     pos[0], pos[1], ... Entries that a line lacks stay empty.
     """
-    separator = separator or next((one for one in (';', '\t') if any(
+    separator = separator or next((one for one in SEPARATORS[1:] if any(
         one in row for row in rows[:HEAD])), ',')
     begin = [cells_of(row, separator) for row in rows[:HEAD] if _LIST.search(row)]
     first = next((k for k, row in enumerate(rows[:HEAD]) if k and any(map(

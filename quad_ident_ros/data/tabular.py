@@ -81,7 +81,7 @@ def read_text(path: Path, separator: str = '') -> Table:
         raise InputError(f'{path}: there are fewer than 2 lines of numbers; give a table with a '
                          f'header and samples{left_out(text, "; ")}')
     columns, told = with_whole_stamps(columns)
-    how = {',': 'commas', ';': 'semicolons', '\t': 'tabs', BLANKS: 'blanks'}.get(
+    how = {',': 'commas', ';': 'semicolons', '\t': 'tabs', '|': 'bars', BLANKS: 'blanks'}.get(
         layout.separator, repr(layout.separator))
     return Table(columns, layout.units, (*notes, *told, *noted(text)),
                  f'{how}{", decimal commas" if layout.comma else ""}', layout.doubts, layout.rate,

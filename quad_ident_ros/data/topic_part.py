@@ -40,6 +40,7 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.motors import MOTORS_OFF, TO_SPEED
 
 BODY_VELOCITY = ('body_vx', 'body_vy', 'body_vz')
+LATE = 0.5      # of the messages that may come before their clock
 STATES = 'pose', 'position', 'attitude', 'velocity'     # that an estimator resets
 _DOWN = re.compile(r'(^|[_/])ned($|[_/])')
 _DEFAULT_FIELD = {'commands': 'data', 'rotors': 'data', 'battery': 'voltage'}
@@ -78,6 +79,7 @@ class TopicPart:
         # Live poses without an attitude, as transforms have them.
         self._left: Counter[str] = Counter()
         self._messages = 0
+        self._left_out = 0      # of the first messages
         self._transforms = Transforms(where, source.topic, source.child)
 
     @property
@@ -277,6 +279,7 @@ class TopicPart:
             raise InputError(f'{self._where}: there is no such topic in this bag, or nothing on '
                              f'it{child}; see what there is with: quad_ident info')
         self._refuse_down(mapping)
+        self._leave_out_before_clock()
         table = np.frombuffer(self._numbers, float).reshape(-1, self._width)
         if spoilt and self.role in ('pose', 'attitude'):
             bad = not_unit(table[:, -4:])
@@ -292,10 +295,23 @@ class TopicPart:
         return Stream(f'topic {self.source.topic}', np.array(stamps, np.int64), columns,
                       {'commands': HELD, 'battery': SLOW}.get(self.role, INTERPOLATED))
 
+    def _leave_out_before_clock(self) -> None:
+        """Leave out the first messages with the stamp 0: a clock of simulation begins late."""
+        stamps = np.array(self._stamps, np.int64)
+        first = int(np.argmax(stamps > 0))
+        if self.counters or not 0 < first < LATE * len(stamps) or (stamps[first:] <= 0).any():
+            return
+        self._left_out = first
+        self._stamps, self.received = self._stamps[first:], self.received[first:]
+        self._numbers = self._numbers[first * self._width:]
+        self.note = (f'topic {self.source.topic}: {first} messages before the clock began, with '
+                     'the stamp 0, are left out')
+
     def not_unit(self, number: int) -> str:
         """Return the error of a message, counted from 0, whose attitude is invalid."""
-        return (f'{self._where}, message {number + 1}: the quaternion does not have length 1; '
-                f'record a {self.role} with an attitude, or leave it out with --from and --to')
+        return (f'{self._where}, message {self._left_out + number + 1}: the quaternion does not '
+                f'have length 1; record a {self.role} with an attitude, or leave it out with '
+                '--from and --to')
 
     def _is_unnamed(self, mapping: Mapping, table: np.ndarray) -> bool:
         """Whether commands of a type that says no kind are by their size no rotor speeds."""

@@ -325,6 +325,18 @@ def test_of_the_velocities_of_mavros_that_of_the_world_is_read(tmp_path):
     agrees(load(write2(tmp_path / 'bag', poses(SMALL) + rows)), SPEED)
 
 
+def test_stamps_of_0_before_a_clock_of_simulation_do_not_cost_the_others(tmp_path):
+    """The times of receipt were used, and a simulation at half the speed took twice as long."""
+    rows = [(topic, kind, START + 2 * (ns - START), {**fields, 'header': header(
+        max(ns - START - 100_000_000, 0))})
+            for topic, kind, ns, fields in odometry(SMALL) + imu(SMALL)]
+    read = load(write2(tmp_path / 'bag', rows))
+    late = int(np.sum(SMALL.t - SMALL.t[0] <= 0.1 + 1e-9))
+    np.testing.assert_allclose(read.t - read.t[0], SMALL.t[late:] - SMALL.t[late], atol=1e-6)
+    np.testing.assert_allclose(read.stack(*PLACE), SMALL.stack(*PLACE)[late:])
+    assert f'topic /imu: {late} messages before the clock began' in '; '.join(read.info['notes'])
+
+
 def test_stamps_of_several_clocks_give_way_to_times_of_receipt(tmp_path):
     """PX4's clock began at its start, the other's in 1970."""
     late = [one for one in px4(SMALL, SHARES, late_us=990_000_000) if 'sensor' in one[0]]
