@@ -139,7 +139,8 @@ def plain(name: str) -> tuple[str, str]:
     # q[0] and q(w) are entries of an array, gyro.x [deg/s] has a unit.
     if match and not _ENTRY.fullmatch(match.group(1)):
         name, said = name[:match.start()], match.group(1).strip().lower()
-    name = re.sub(r'([a-z0-9])([A-Z])', r'\1_\2', name.strip())
+    name = re.sub(r'_0(?=[/.])', '', name.strip())      # the first instance of a topic of PX4
+    name = re.sub(r'([a-z0-9])([A-Z])', r'\1_\2', name)
     name = re.sub(r'[^a-z0-9]+', '_', without_accents(name).lower()).strip('_')
     name = re.sub(r'_0(\d)$', r'_\1', name)      # PlotJuggler counts .00, .01, ...
     match = ENDING.search(name)

@@ -44,6 +44,8 @@ def same(path, group, record=FLIGHT):
     ('pos', ('X_W', 'Y_W', 'Z_W')), ('pos', ('x_est', 'y_est', 'z_est')),
     ('pos', ('pos_x_enu', 'pos_y_enu', 'pos_z_enu')), ('pos', ('pos_x_m', 'pos_y_m', 'pos_z_m')),
     ('pos', ('position_east', 'position_north', 'position_up')),
+    ('pos', tuple(f'vehicle_local_position_0/{axis}' for axis in 'xyz')),
+    ('gyro', tuple(f'vehicle_angular_velocity_0/xyz[{k}]' for k in range(3))),
     ('vel', ('x_vel', 'y_vel', 'z_vel')), ('vel', ('vx_w', 'vy_w', 'vz_w')),
     ('vel', ('vx_m_s', 'vy_m_s', 'vz_m_s')), ('vel', ('vx_mps', 'vy_mps', 'vz_mps')),
     ('vel', ('vel_x_ms', 'vel_y_ms', 'vel_z_ms')), ('vel', ('linVel_x', 'linVel_y', 'linVel_z')),
