@@ -185,7 +185,7 @@ def _is_units(cells: list[str]) -> bool:
 def _names(path: Path, rows: list[str], line: int, head: int, first: int,
            separator: str) -> tuple[list[str], dict[str, str]]:
     """Return the names of the columns, with the line above where they alone repeat; units."""
-    names = cells_of(rows[head].lstrip('#% '), separator)
+    names = cells_of(rows[head].lstrip('#% \ufeff'), separator)
     if len(names) > MOST_COLUMNS:
         raise InputError(f'{path}, line {line}: {len(names)} columns are not a flight')
     if _doubled(names) and head > 0:
