@@ -8,8 +8,9 @@ from typing import TypeAlias
 
 import numpy as np
 
+from quad_ident_ros.data.attitudes import attitudes_of
 from quad_ident_ros.data.counted import counted
-from quad_ident_ros.data.record import FlightRecord, NOTED, QUATERNION
+from quad_ident_ros.data.record import FlightRecord, NOTED
 from quad_ident_ros.model.attitude import conjugate, continuous, product, rotate
 
 Reset: TypeAlias = tuple[float, float, str]
@@ -198,13 +199,10 @@ def _unexplained_position(record: FlightRecord) -> np.ndarray | None:
 
 def _unexplained_heading(record: FlightRecord) -> tuple[np.ndarray, np.ndarray] | None:
     """Return (turn about the vertical less that of the rate, turn itself), (N,) rad, or None."""
-    if not record.has(*QUATERNION):
+    attitudes = attitudes_of(record)
+    if attitudes is None:
         return None
-    quaternion = record.stack(*QUATERNION)
-    norm = np.linalg.norm(quaternion, axis=-1, keepdims=True)
-    if not (norm > 0.5).all():
-        return None
-    q = continuous(quaternion / norm)
+    q = continuous(attitudes)
     turn = product(conjugate(q[:-1]), q[1:])
     turn *= np.where(turn[:, :1] < 0, -1.0, 1.0)
     sine = np.linalg.norm(turn[:, 1:], axis=-1, keepdims=True)

@@ -92,6 +92,16 @@ def test_poses_that_are_held_do_not_jump(every):
                                   fast.columns.items()})) == []
 
 
+def test_a_jump_of_a_heading_in_angles_is_seen(tmp_path):
+    record = turned(WHOLE, 12.0, np.radians(35.0))
+    angles = changed(record, **dict.fromkeys(('qw', 'qx', 'qy', 'qz')), **dict(zip(
+        ('phi', 'theta', 'psi'), record.euler().T, strict=True)))
+    [(before, after, why)] = jumps(angles)
+    assert after - before < 0.03 and 'heading jumps by 3' in why
+    round_and_round = changed(angles, psi=(angles.columns['psi'] + np.pi) % (2 * np.pi))
+    assert len(jumps(round_and_round)) == 1
+
+
 def test_what_comes_back_is_no_reset():
     assert jumps(moved(WHOLE, 9.0, 3.0, until=9.1)) == []
 
