@@ -28,7 +28,8 @@ _ASKED = re.compile(r'set_?point|target|desired|reference|goal|command|waypoint'
 # PX4's inputs; measurements before calibration or fusion; MAVROS' copies of one estimate; truth
 # beside an estimate.
 _INPUT = re.compile(r'(^|/)fmu/in/')
-_SECOND = re.compile(r'raw|ground_?truth|(^|/)odometry/(in|out)$|(^|/)global_position/')
+_SECOND = re.compile(r'raw|ground_?truth|(^|/)odometry/(in|out)$|(^|/)global_position/'
+                     r'|(^|/)velocity_body(_cov)?$')
 _OF_ONE = re.compile(rf'(?:^|/)({VEHICLE})/')
 
 

@@ -60,7 +60,7 @@ def read_mapped_bag(path: str | Path, mapping: Mapping, spoilt: bool = False
     else:
         notes = [*notes, *dict.fromkeys(without_stamps(part.source.topic) for part in parts
                                         if not part.stamped)]
-    notes += [part.note for part in parts if part.note]
+    notes += dict.fromkeys(part.note for part in parts if part.note)
     start, t, columns, left_out = join(path, streams)
     record = FlightRecord(t, velocity_in_world(path, columns),
                           {'source': str(path), 'start_ns': start, 'notes': [*notes, *left_out]}

@@ -152,7 +152,8 @@ def mapping_from(data: Any, where: str) -> Mapping:
         actuators_from(f'{where}: actuators', data['actuators']) if 'actuators' in data else None,
         _columns(f'{where}: columns', data.get('columns', {})),
         schema.choice(f'{where}: quaternion', data.get('quaternion', 'wxyz'), ('wxyz', 'xyzw')),
-        schema.choice(f'{where}: separator', data.get('separator', ''), ('', ',', ';', '\t', ' ')))
+        schema.choice(f'{where}: separator', data.get('separator', ''),
+                      ('', ',', ';', '\t', '|', ' ')))
 
 
 def actuators_from(where: str, data: Any) -> Actuators:

@@ -33,6 +33,10 @@ class NoSuch(Exception):
     """A message does not hold what its role needs."""
 
 
+class Absent(NoSuch):
+    """A message of many lacks what others of its topic hold, such as a body that is not seen."""
+
+
 @dataclass(frozen=True)
 class Reading:
     """
@@ -61,6 +65,16 @@ def _wxyz(q: Message) -> Values:
 
 def _pose(pose: Message) -> Values:
     return *_xyz(pose.position), *_wxyz(pose.orientation)
+
+
+def _only(poses: Sequence[Message]) -> Message:
+    """Return the one element of a list of poses."""
+    if not len(poses):
+        raise Absent('its list of poses is empty')
+    if len(poses) > 1:
+        raise NoSuch('it holds several poses; name one by its place, or by its name if it has '
+                     'one, such as field: "poses[0]" or field: "poses[cf1].pose"')
+    return poses[0]
 
 
 def _transform(transform: Message) -> Values:
@@ -146,6 +160,9 @@ ROLES_OF = {
         'pose': Reading(lambda m: _pose(m.pose.pose), 1)},
     'geometry_msgs/msg/TransformStamped': {
         'pose': Reading(lambda m: _transform(m.transform), 1)},
+    'geometry_msgs/msg/PoseArray': {'pose': Reading(lambda m: _pose(_only(m.poses)), 2)},
+    'motion_capture_tracking_interfaces/msg/NamedPoseArray': {
+        'pose': Reading(lambda m: _pose(_only(m.poses).pose), 2)},
     'tf2_msgs/msg/TFMessage': {'pose': Reading(lambda m: _transform(m.transform), 2)},
     'tf/msg/tfMessage': {'pose': Reading(lambda m: _transform(m.transform), 2)},
     'geometry_msgs/msg/PointStamped': {'position': Reading(lambda m: _xyz(m.point), 2)},
@@ -201,6 +218,9 @@ ROLES_OF = {
         for role, rank in (('commands', 0), ('rotors', 1))},
 }
 """Message type -> role of mapping.ROLES -> Reading."""
+
+LISTS_OF_POSES = ('geometry_msgs/msg/PoseArray',
+                  'motion_capture_tracking_interfaces/msg/NamedPoseArray')
 
 NORMALISED = Reading(_normalized, 0, 'normalised')
 """How Actuators without speeds are read."""
@@ -293,11 +313,12 @@ def at_path(message: Message, path: str, msgtype: str) -> Any:
     """
     Return what the path of a field leads to: a value, or a list of them through a list.
 
-    Args: path such as pose.pose or esc_status[].rpm. Raises NoSuch that names what there is.
+    Args: path such as pose.pose, esc_status[].rpm, poses[0].pose or poses[cf1].pose. Raises
+    NoSuch that names what there is.
     """
     values, through_list = [message], False
     for part in path.split('.'):
-        name = part.partition('[')[0]
+        name, _, which = part.rstrip(']').partition('[')
         following: list[Any] = []
         for value in values:
             fields = getattr(value, '__dataclass_fields__', None)
@@ -306,8 +327,10 @@ def at_path(message: Message, path: str, msgtype: str) -> Any:
                 known = ', '.join(key for key in fields if not key.startswith('__'))
                 raise NoSuch(f'{msgtype} has no field {name!r}'
                              + (f'; name one of: {known}' if known else ''))
-            value = getattr(value, name)
-            if isinstance(value, (list, tuple)) and value and not isinstance(
+            named, value = getattr(value, 'name', None), getattr(value, name)
+            if which:
+                following.append(_element(value, which, named, part))
+            elif isinstance(value, (list, tuple)) and value and not isinstance(
                     value[0], (int, float, str, bytes)):
                 following += value
                 through_list = True
@@ -319,6 +342,32 @@ def at_path(message: Message, path: str, msgtype: str) -> Any:
     return values if through_list else values[0]
 
 
+def selects(path: str) -> bool:
+    """Return whether the path of a field names one element of a list."""
+    return bool(re.search(r'\[[^\]]+\]', path))
+
+
+def _element(values: Any, which: str, named: Any, part: str) -> Any:
+    """
+    Return the element of a list by its place, from 0, or by its name.
+
+    Args: named: the field `name` beside the list, which may have the names of its elements.
+    """
+    if not isinstance(values, (list, tuple, np.ndarray)):
+        raise NoSuch(f'the field {part.partition("[")[0]!r} is no list')
+    if which.isdecimal():
+        if int(which) < len(values):
+            return values[int(which)]
+        raise Absent(f'{part!r} is not there, the list has {len(values)} elements; the first is 0')
+    names = list(named) if isinstance(named, (list, tuple)) else [
+        getattr(value, 'name', getattr(value, 'child_frame_id', '')) for value in values]
+    if which in names[:len(values)]:
+        return values[names.index(which)]
+    known = ', '.join(str(name)[:30] for name in names[:10] if name)
+    raise Absent(f'{part!r} is not there; ' + (
+        f'there are {known}' if known else 'its elements have no names, but places from 0'))
+
+
 def shaped(role: str, value: Any, path: str, many: bool = False) -> Values:
     """
     Return the numbers of a role from what a path leads to; NoSuch where they are not that.
@@ -327,6 +376,8 @@ def shaped(role: str, value: Any, path: str, many: bool = False) -> Values:
     """
     try:
         if role == 'pose':
+            if isinstance(value, list):
+                value = _only(value)
             while hasattr(value, 'pose'):
                 value = value.pose
             return _pose(value) if hasattr(value, 'position') else _transform(

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from quad_ident_ros.data.cells import MOST_ENTRIES
 from quad_ident_ros.data.limits import most
 from quad_ident_ros.data.stamps_in_two import with_whole_stamps
 from quad_ident_ros.data.tabular import left_out, MOST_COLUMNS, noted, numbers_in, Table
@@ -15,7 +16,6 @@ from quad_ident_ros.errors import InputError
 
 _INDEX = '__index_level_0__'     # the name that pandas gives an index without one
 NANOSECONDS = 'ns'   # unit of columns whose type says that they are times
-MOST_ENTRIES = 16   # of a list in a cell: a pose with its attitude has 7, a matrix 16
 
 
 def read_parquet(path: Path) -> Table:
@@ -42,6 +42,8 @@ def read_parquet(path: Path) -> Table:
                 name = 'time'
             if not name.isprintable() or not name.strip() or name.strip() in columns:
                 continue
+            if pyarrow.types.is_dictionary(column.type):    # as of categories of pandas
+                column = column.cast(column.type.value_type)
             values = _numbers(pyarrow, column)
             cells: list[str] = []
             entries = _entries(pyarrow, column)
@@ -80,12 +82,20 @@ def _is_text(pyarrow: Any, kind: Any) -> bool:
 
 
 def _entries(pyarrow: Any, column: Any) -> np.ndarray | None:
-    """Return the entries (n, N) of a column of lists of n numbers each, or None for others."""
+    """
+    Return the entries (n, N) of a column of lists of n numbers each, or None for others.
+
+    A row without a list has nan.
+    """
     types = pyarrow.types
     if not (types.is_list(column.type) or types.is_large_list(column.type)
-            or types.is_fixed_size_list(column.type)) or column.null_count or not len(column):
+            or types.is_fixed_size_list(column.type)):
         return None
-    one = column.combine_chunks()
+    there = np.asarray(column.is_valid())
+    lists = column.drop_null()
+    if not len(lists):
+        return None
+    one = lists.combine_chunks()
     one = one if isinstance(one, pyarrow.Array) else one.chunk(0)
     values = one.flatten()
     count, rest = divmod(len(values), len(one))
@@ -93,7 +103,11 @@ def _entries(pyarrow: Any, column: Any) -> np.ndarray | None:
             np.asarray(one.value_lengths()) != count).any():
         return None
     numbers = _numbers(pyarrow, values)
-    return None if numbers is None else numbers.reshape(-1, count).T
+    if numbers is None:
+        return None
+    entries = np.full((count, len(there)), np.nan)
+    entries[:, there] = numbers.reshape(-1, count).T
+    return entries
 
 
 def _numbers(pyarrow: Any, column: Any) -> np.ndarray | None:

@@ -8,8 +8,9 @@ from typing import TypeAlias
 
 import numpy as np
 
+from quad_ident_ros.data.attitudes import attitudes_of
 from quad_ident_ros.data.counted import counted
-from quad_ident_ros.data.record import FlightRecord, NOTED, QUATERNION
+from quad_ident_ros.data.record import FlightRecord, NOTED
 from quad_ident_ros.model.attitude import conjugate, continuous, product, rotate
 
 Reset: TypeAlias = tuple[float, float, str]
@@ -20,6 +21,8 @@ HEADING = np.radians(20.0)     # rad; the compass of an estimator in flight is o
 WITHIN = 0.2        # s in which a jump is over: streams of 5 Hz and more, interpolated
 RETURNS = 1.0       # s; what has come back by then was a glitch, and no reset
 CLEAR = 5.0         # times the usual disagreement of the streams
+FASTEST = 60.0, 20.0    # m/s, rad/s about the vertical, which no multirotor exceeds
+ALONE = 0.5         # of a jump, that is more than all else that is too fast around it
 GAP = 5.0           # periods; what happens in a longer silence is no jump
 APART = 0.1         # s between two parts: a fit does not bridge a gap of that length
 
@@ -130,18 +133,21 @@ def jumps(record: FlightRecord) -> list[Reset]:
 
     A position jumps where it changes by more than POSITION within WITHIN, beyond what the
     velocity explains, a heading by more than HEADING beyond what the rate explains; by far more
-    than the streams usually disagree, and not to come back. Without velocity or rate none is
-    reported: what only moves fast is not a jump.
+    than the streams usually disagree, and not to come back. Without velocity or rate they jump
+    where they are alone in being faster than any vehicle.
     """
     found = []
     rest = _unexplained_position(record)
     if rest is not None:
-        found += _steps(record, rest, POSITION, record.stack('px', 'py', 'pz'),
-                        lambda size: f'the position jumps by {size:.2g} m')
+        steps = _steps(record, rest, POSITION, record.stack('px', 'py', 'pz'),
+                       lambda size: f'the position jumps by {size:.2g} m')
+        found += steps if record.has('vx', 'vy', 'vz') else _alone(record, rest, steps)
     turn = _unexplained_heading(record)
     if turn is not None:
-        found += _steps(record, turn[0][:, None], HEADING, turn[1][:, None],
-                        lambda size: f'the heading jumps by {np.degrees(size):.0f} deg')
+        steps = _steps(record, turn[0][:, None], HEADING, turn[1][:, None],
+                       lambda size: f'the heading jumps by {np.degrees(size):.0f} deg')
+        found += steps if record.has('wx', 'wy', 'wz') else _alone(
+            record, turn[0][:, None], steps)
     return _merged(found)
 
 
@@ -180,33 +186,58 @@ def _length(record: FlightRecord, piece: tuple[int, int]) -> float:
 
 
 def _unexplained_position(record: FlightRecord) -> np.ndarray | None:
-    """Return the path less the integral of the velocity, (N, 3) m, or None."""
-    if not record.has('px', 'py', 'pz', 'vx', 'vy', 'vz'):
+    """Return the path less the integral of the velocity, (N, 3) m, or None without a position."""
+    if not record.has('px', 'py', 'pz'):
         return None
+    steps = np.diff(record.stack('px', 'py', 'pz'), axis=0)
+    if not record.has('vx', 'vy', 'vz'):
+        return _summed(record, _too_fast(record, steps, FASTEST[0]))
     velocity = record.stack('vx', 'vy', 'vz')
     dt = np.diff(record.t)[:, None]
-    steps = np.diff(record.stack('px', 'py', 'pz'), axis=0)
     return _summed(record, steps - 0.5 * (velocity[1:] + velocity[:-1]) * dt)
 
 
 def _unexplained_heading(record: FlightRecord) -> tuple[np.ndarray, np.ndarray] | None:
     """Return (turn about the vertical less that of the rate, turn itself), (N,) rad, or None."""
-    if not record.has(*QUATERNION, 'wx', 'wy', 'wz'):
+    attitudes = attitudes_of(record)
+    if attitudes is None:
         return None
-    quaternion = record.stack(*QUATERNION)
-    norm = np.linalg.norm(quaternion, axis=-1, keepdims=True)
-    if not (norm > 0.5).all():
-        return None
-    q = continuous(quaternion / norm)
+    q = continuous(attitudes)
     turn = product(conjugate(q[:-1]), q[1:])
     turn *= np.where(turn[:, :1] < 0, -1.0, 1.0)
     sine = np.linalg.norm(turn[:, 1:], axis=-1, keepdims=True)
     angle = 2.0 * np.arctan2(sine, turn[:, :1])
     vector = turn[:, 1:] * np.where(sine > 1e-9, angle / np.maximum(sine, 1e-9), 2.0)
-    rate = record.stack('wx', 'wy', 'wz')
-    explained = 0.5 * (rate[1:] + rate[:-1]) * np.diff(record.t)[:, None]
-    rest, whole = rotate(q[:-1], vector - explained)[:, 2], rotate(q[:-1], vector)[:, 2]
+    whole = rotate(q[:-1], vector)[:, 2]
+    if record.has('wx', 'wy', 'wz'):
+        rate = record.stack('wx', 'wy', 'wz')
+        explained = 0.5 * (rate[1:] + rate[:-1]) * np.diff(record.t)[:, None]
+        rest = rotate(q[:-1], vector - explained)[:, 2]
+    else:
+        rest = _too_fast(record, whole[:, None], FASTEST[1])[:, 0]
     return _summed(record, rest[:, None])[:, 0], _summed(record, whole[:, None])[:, 0]
+
+
+def _too_fast(record: FlightRecord, steps: np.ndarray, fastest: float) -> np.ndarray:
+    """Return the steps (N - 1, k) that are faster than a vehicle moves, 0 for the others."""
+    fast = np.linalg.norm(steps, axis=1) > fastest * np.diff(record.t)
+    return np.where(fast[:, None], steps, 0.0)
+
+
+def _alone(record: FlightRecord, rest: np.ndarray, found: Sequence[Reset]) -> list[Reset]:
+    """
+    Return the jumps beside which little else is too fast, as samples are that are held.
+
+    Args: rest: the sum (N, k) of what is too fast; found: jumps, as split takes them.
+    """
+    size = np.linalg.norm(np.diff(rest, axis=0), axis=1)
+    kept = []
+    for before, after, why in found:
+        inside = (record.t[:-1] >= before) & (record.t[1:] <= after)
+        near = (record.t[:-1] >= before - RETURNS) & (record.t[1:] <= after + RETURNS)
+        if size[near & ~inside].sum() < ALONE * size[inside].sum():
+            kept.append((before, after, why))
+    return kept
 
 
 def _summed(record: FlightRecord, steps: np.ndarray) -> np.ndarray:

@@ -4,7 +4,6 @@
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
-import csv
 from dataclasses import dataclass, field
 from pathlib import Path
 import re
@@ -12,6 +11,7 @@ import re
 import numpy as np
 
 from quad_ident_ros.data import motive
+from quad_ident_ros.data.cells import BLANKS, cells_of, HEAD, separator_in, unrolled
 from quad_ident_ros.data.csv import refuse_uneven
 from quad_ident_ros.data.dates import is_time, seconds_of
 from quad_ident_ros.data.plain_numbers import plain_numbers
@@ -20,11 +20,8 @@ from quad_ident_ros.data.text_lines import first_rows, rows_of
 from quad_ident_ros.data.unit_names import is_unit
 from quad_ident_ros.errors import InputError
 
-SEPARATORS = (',', ';', '\t')
 VICON = ('objects', 'segments', 'trajectories', 'global angles', 'model outputs')
 """What is in a table of Vicon, by its first line; the second has the rate of the cameras."""
-BLANKS = ' '    # any number of them
-_HEAD = 20      # lines in which the first numbers come
 MOST_COLUMNS = 4096    # wide logs have hundreds; each costs the guess a look
 _FEW = 0.1      # of the cells of a column: with more text it is one of text
 _COMMA = re.compile(r'[-+]?[\d.]*,\d*(?:[eE][-+]?\d+)?')
@@ -63,8 +60,10 @@ def read_text(path: Path, separator: str = '') -> Table:
 
     Raises InputError that names file, line and column.
     """
-    begin = first_rows(path, _HEAD + 1)
-    layout = _layout(path, *begin, separator) if begin else None
+    begin = first_rows(path, HEAD + 1)
+    layout = None
+    if begin and unrolled(begin[0], separator) == begin[0]:
+        layout = _layout(path, *begin, separator)
     plain = layout and plain_numbers(path, layout.line - 1, layout.delimiter, layout.comma)
     text: dict[str, Sequence[str]] = {}
     if layout and plain and plain.values.shape[1] == len(layout.names):
@@ -72,7 +71,7 @@ def read_text(path: Path, separator: str = '') -> Table:
     else:
         rows, truncated = rows_of(path)
         places = [k for k, row in enumerate(rows, 1) if row.strip()]    # as editors count
-        rows = [rows[k - 1] for k in places]
+        rows = unrolled([rows[k - 1] for k in places], separator)
         layout = _layout(path, rows, places, separator)
         first = places.index(layout.line)
         columns, text = _thorough(path, rows[first:], places[first:], layout.names,
@@ -82,7 +81,7 @@ def read_text(path: Path, separator: str = '') -> Table:
         raise InputError(f'{path}: there are fewer than 2 lines of numbers; give a table with a '
                          f'header and samples{left_out(text, "; ")}')
     columns, told = with_whole_stamps(columns)
-    how = {',': 'commas', ';': 'semicolons', '\t': 'tabs', BLANKS: 'blanks'}.get(
+    how = {',': 'commas', ';': 'semicolons', '\t': 'tabs', '|': 'bars', BLANKS: 'blanks'}.get(
         layout.separator, repr(layout.separator))
     return Table(columns, layout.units, (*notes, *told, *noted(text)),
                  f'{how}{", decimal commas" if layout.comma else ""}', layout.doubts, layout.rate,
@@ -114,14 +113,14 @@ class _Layout:
 def _layout(path: Path, rows: list[str], places: list[int], separator: str) -> _Layout:
     """Return the _Layout of a table from its first lines, and where they stand."""
     separator = separator or separator_in(rows)
-    cells = [cell for row in rows[1:_HEAD] for cell in _cells(row, separator)]
+    cells = [cell for row in rows[1:HEAD] for cell in cells_of(row, separator)]
     comma = any(map(_COMMA.fullmatch, cells)) and not any(map(_POINT.fullmatch, cells))
     head, first = _head(path, rows, separator, comma)
     names, units = _names(path, rows, places[head], head, first, separator)
-    names = _under_headings(names, rows[first:first + _HEAD], separator)
-    names = _with_index(names, rows[first:first + _HEAD], separator, comma)
+    names = _under_headings(names, rows[first:first + HEAD], separator)
+    names = _with_index(names, rows[first:first + HEAD], separator, comma)
     _refuse_doubled(path, places[head], names)
-    above = [_cells(row, separator) for row in rows[:head]] if motive.is_motive(rows[0]) else []
+    above = [cells_of(row, separator) for row in rows[:head]] if motive.is_motive(rows[0]) else []
     units |= motive.units_of(above, names)
     return _Layout(separator, comma, names, units, places[first],
                    (motive.DOUBT,) if above else (),
@@ -134,33 +133,6 @@ def _rate_of_frames(rows: list[str]) -> float:
         return 0.0
     said = re.match(r'"?(\d{1,5}(\.\d{1,6})?)\b', rows[1].strip())
     return float(said[1]) if said else 0.0
-
-
-def separator_in(rows: list[str]) -> str:
-    """Return the separator that the lines of a table have most of, the same in each."""
-    best, most_of = ',', 0
-    for separator in SEPARATORS:
-        counts = Counter(row.count(separator) for row in rows[:_HEAD])
-        count, lines = counts.most_common(1)[0] if counts else (0, 0)
-        # Decimal commas are as many as cells at most, and the header has none of them.
-        share = count * lines if rows and rows[0].count(separator) else 0
-        if share > most_of:
-            best, most_of = separator, share
-    if not most_of and len(rows) > 2:       # as the tables of trajectories are
-        cells = Counter(len(row.split()) for row in rows[1:_HEAD])
-        count, lines = cells.most_common(1)[0]
-        if count > 1 and lines > 0.9 * len(rows[1:_HEAD]):
-            return BLANKS
-    return best
-
-
-def _cells(row: str, separator: str) -> list[str]:
-    if separator == BLANKS:
-        return row.split()
-    try:
-        return [cell.strip() for cell in next(csv.reader([row], delimiter=separator), [])]
-    except csv.Error:
-        return [cell.strip() for cell in row.split(separator)]
 
 
 def _number(cell: str, comma: bool) -> float | None:
@@ -178,23 +150,23 @@ def _number(cell: str, comma: bool) -> float | None:
 
 def _head(path: Path, rows: list[str], separator: str, comma: bool) -> tuple[int, int]:
     """Return the places of the line of names and of the first line of numbers."""
-    for k, row in enumerate(rows[:_HEAD]):
+    for k, row in enumerate(rows[:HEAD]):
         # A line of numbers among names, as of markers, is not a sample.
         if _is_numbers(row, separator, comma) and (k + 1 == len(rows) or _is_numbers(
                 rows[k + 1], separator, comma)):
             if k == 0:
                 raise InputError(f'{path}, line 1: there are numbers where the names of the '
                                  'columns belong; begin with a line of names')
-            if k > 1 and _is_units(_cells(rows[k - 1], separator)):
+            if k > 1 and _is_units(cells_of(rows[k - 1], separator)):
                 return k - 2, k
             return k - 1, k
-    raise InputError(f'{path}: there is no line of numbers among the first {_HEAD}; give a table '
+    raise InputError(f'{path}: there is no line of numbers among the first {HEAD}; give a table '
                      'with a header and samples')
 
 
 def _is_numbers(row: str, separator: str, comma: bool) -> bool:
     """Return whether half or more of the cells of a line are numbers, or none is text."""
-    cells = _cells(row, separator)
+    cells = cells_of(row, separator)
     values = [_number(cell, comma) for cell in cells]
     if any(cells) and all(value is not None or is_time(cell)
                           for value, cell in zip(values, cells, strict=True)):
@@ -213,25 +185,25 @@ def _is_units(cells: list[str]) -> bool:
 def _names(path: Path, rows: list[str], line: int, head: int, first: int,
            separator: str) -> tuple[list[str], dict[str, str]]:
     """Return the names of the columns, with the line above where they alone repeat; units."""
-    names = _cells(rows[head].lstrip('#% '), separator)
+    names = cells_of(rows[head].lstrip('#% \ufeff'), separator)
     if len(names) > MOST_COLUMNS:
         raise InputError(f'{path}, line {line}: {len(names)} columns are not a flight')
     if _doubled(names) and head > 0:
-        above = _cells(rows[head - 1], separator)
+        above = cells_of(rows[head - 1], separator)
         if len(above) == len(names):
             if rows[0].strip('",; \t').lower() in VICON:
                 # The name of an object stands above the first of its columns.
                 for k in range(1, len(above)):
                     above[k] = above[k] or above[k - 1]
             names = [f'{one} {name}'.strip() for one, name in zip(above, names, strict=True)]
-            names = _below(names, [_cells(row, separator) for row in rows[:head - 1]])
+            names = _below(names, [cells_of(row, separator) for row in rows[:head - 1]])
     bad = [name for name in names if not name.isprintable()]
     if bad:
         raise InputError(f'{path}, line {line}, column {bad[0][:40]!r}: this is not a column '
                          'name; use printable text')
     units = {}
     if first - head == 2:
-        cells = _cells(rows[head + 1], separator)
+        cells = cells_of(rows[head + 1], separator)
         units = {name: cell.strip('[]()') for name, cell in zip(names, cells, strict=False)
                  if name and cell}
     return names, units
@@ -245,7 +217,7 @@ def _under_headings(names: list[str], rows: list[str], separator: str) -> list[s
     """
     if max(Counter(names).values()) < 2:
         return names
-    cells = [_cells(row, separator) for row in rows]
+    cells = [cells_of(row, separator) for row in rows]
     empty = [all(k >= len(line) or not line[k] for line in cells) for k in range(len(names))]
     found, heading = [], ''
     for name, none in zip(names, empty, strict=True):
@@ -265,7 +237,7 @@ def _with_index(names: list[str], rows: list[str], separator: str, comma: bool) 
     """
     if names[0] or {'time', 'index'} & set(names):
         return names
-    cells = [next(iter(_cells(row, separator)), '') for row in rows]
+    cells = [next(iter(cells_of(row, separator)), '') for row in rows]
     if all(map(is_time, cells)):
         return ['time', *names[1:]]
     values = [_number(cell, comma) for cell in cells]
@@ -303,7 +275,7 @@ def _thorough(path: Path, rows: list[str], places: list[int], names: list[str], 
     """Return the columns of numbers of any table, and the cells of those of text."""
     cells, wrong = [], []
     for k, row in zip(places, rows, strict=True):
-        line = _cells(row, separator)
+        line = cells_of(row, separator)
         if len(line) == len(names) + 1 and not line[-1]:
             line.pop()      # a separator at the end
         if len(line) != len(names):

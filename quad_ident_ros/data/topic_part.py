@@ -15,13 +15,16 @@ from quad_ident_ros.data import frames
 from quad_ident_ros.data.mapping import Actuators, in_record_unit, Mapping, rotor_speeds, Source
 from quad_ident_ros.data.message import Message
 from quad_ident_ros.data.message_roles import (
+    Absent,
     at_path,
     is_px4,
     is_tf,
+    LISTS_OF_POSES,
     NoSuch,
     Reading,
     reading_of,
     ROLES_OF,
+    selects,
     shaped,
     stamp_of,
     stamps_of,
@@ -37,6 +40,7 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.motors import MOTORS_OFF, TO_SPEED
 
 BODY_VELOCITY = ('body_vx', 'body_vy', 'body_vz')
+LATE = 0.5      # of the messages that may come before their clock
 STATES = 'pose', 'position', 'attitude', 'velocity'     # that an estimator resets
 _DOWN = re.compile(r'(^|[_/])ned($|[_/])')
 _DEFAULT_FIELD = {'commands': 'data', 'rotors': 'data', 'battery': 'voltage'}
@@ -75,6 +79,7 @@ class TopicPart:
         # Live poses without an attitude, as transforms have them.
         self._left: Counter[str] = Counter()
         self._messages = 0
+        self._left_out = 0      # of the first messages
         self._transforms = Transforms(where, source.topic, source.child)
 
     @property
@@ -130,7 +135,8 @@ class TopicPart:
         None where messages with columns in place of numbers cannot be read: of transforms each has
         those that it has, and angles become a quaternion one by one.
         """
-        if is_tf(self._type) or (self.role == 'attitude' and self.source.unit):
+        if (is_tf(self._type) or (self.role == 'attitude' and self.source.unit)
+                or selects(self.source.field) or self._type in LISTS_OF_POSES):
             return None
         return self._reading.fixed if self._reading else ()
 
@@ -193,6 +199,9 @@ class TopicPart:
         self._messages += 1
         try:
             return [self._one(part, kind) for part in self._parts(message, kind)]
+        except Absent as error:
+            self.refused = f'{self._here()}: {error}'
+            return []
         except NoSuch as error:
             raise InputError(f'{self._here()}: {error}') from None
         except OTHER_SHAPE:
@@ -264,10 +273,13 @@ class TopicPart:
         if self.is_tf:
             self._compose()
         if not self._numbers:
+            if self.refused:
+                raise InputError(self.refused)
             child = f' with child_frame_id {self.source.child}' if self.source.child else ''
             raise InputError(f'{self._where}: there is no such topic in this bag, or nothing on '
                              f'it{child}; see what there is with: quad_ident info')
         self._refuse_down(mapping)
+        self._leave_out_before_clock()
         table = np.frombuffer(self._numbers, float).reshape(-1, self._width)
         if spoilt and self.role in ('pose', 'attitude'):
             bad = not_unit(table[:, -4:])
@@ -283,10 +295,23 @@ class TopicPart:
         return Stream(f'topic {self.source.topic}', np.array(stamps, np.int64), columns,
                       {'commands': HELD, 'battery': SLOW}.get(self.role, INTERPOLATED))
 
+    def _leave_out_before_clock(self) -> None:
+        """Leave out the first messages with the stamp 0: a clock of simulation begins late."""
+        stamps = np.array(self._stamps, np.int64)
+        first = int(np.argmax(stamps > 0))
+        if self.counters or not 0 < first < LATE * len(stamps) or (stamps[first:] <= 0).any():
+            return
+        self._left_out = first
+        self._stamps, self.received = self._stamps[first:], self.received[first:]
+        self._numbers = self._numbers[first * self._width:]
+        self.note = (f'topic {self.source.topic}: {first} messages before the clock began, with '
+                     'the stamp 0, are left out')
+
     def not_unit(self, number: int) -> str:
         """Return the error of a message, counted from 0, whose attitude is invalid."""
-        return (f'{self._where}, message {number + 1}: the quaternion does not have length 1; '
-                f'record a {self.role} with an attitude, or leave it out with --from and --to')
+        return (f'{self._where}, message {self._left_out + number + 1}: the quaternion does not '
+                f'have length 1; record a {self.role} with an attitude, or leave it out with '
+                '--from and --to')
 
     def _is_unnamed(self, mapping: Mapping, table: np.ndarray) -> bool:
         """Whether commands of a type that says no kind are by their size no rotor speeds."""

@@ -19,7 +19,12 @@ TF, ESC = 'tf2_msgs/msg/TFMessage', 'mavros_msgs/msg/ESCStatus'
 ACTUATORS, MAV = 'actuator_msgs/msg/Actuators', 'mav_msgs/msg/Actuators'
 PX4 = 'px4_msgs/msg/'
 CRAZYFLIE = 'crazyflie_interfaces/msg/LogDataGeneric'
-OTHERS = {CRAZYFLIE: 'std_msgs/Header header\nuint32 timestamp\nfloat32[] values\n',
+_MOCAP = 'motion_capture_tracking_interfaces/msg/'
+NAMED_POSES = _MOCAP + 'NamedPoseArray'
+OTHERS = {_MOCAP + 'NamedPose': 'string name\ngeometry_msgs/Pose pose\n',
+          NAMED_POSES: f'std_msgs/Header header\n{_MOCAP.replace("/msg", "")}NamedPose[] poses\n',
+          'gazebo_msgs/msg/ModelStates': 'string[] name\ngeometry_msgs/Pose[] pose\n',
+          CRAZYFLIE: 'std_msgs/Header header\nuint32 timestamp\nfloat32[] values\n',
           'lab_msgs/msg/State': 'geometry_msgs/Pose where\nfloat32[3] omega\nfloat64[] rpm\n',
           TF: 'geometry_msgs/TransformStamped[] transforms\n'}
 
@@ -111,6 +116,14 @@ def imu(record, topic='/imu', **more):
 def poses(record, topic='/pose_of_it'):
     """Return the messages of a record as PoseStamped."""
     return [(topic, POSE, ns, {'header': fields['header'], 'pose': fields['pose']['pose']})
+            for _, _, ns, fields in odometry(record)]
+
+
+def named_poses(record, *others, topic='/poses'):
+    """Return the messages of a record as the last, cf1, of named poses; others stand still."""
+    return [(topic, NAMED_POSES, ns, {'header': fields['header'], 'poses': [
+        *({'name': name, 'pose': {'orientation': {'w': 1.0}}} for name in others),
+        {'name': 'cf1', 'pose': fields['pose']['pose']}]})
             for _, _, ns, fields in odometry(record)]
 
 

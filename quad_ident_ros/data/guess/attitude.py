@@ -7,8 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from quad_ident_ros.data.columns import from_euler, RATE
+from quad_ident_ros.data.columns import from_euler, POSITION, RATE, VELOCITY
 from quad_ident_ros.data.guess.draft import Draft, together
+from quad_ident_ros.data.guess.motion import bends, summed
 from quad_ident_ros.data.guess.names import ANGLE, PITCH_DOWN
 from quad_ident_ros.data.guess.series import alike, is_unit, ratio_of, unit_length
 from quad_ident_ros.data.mapping import ATTITUDE, Column, factor_of, UNITS
@@ -18,10 +19,13 @@ LEVEL, TURNED = 40.0, 60.0      # deg: the usual tilt is less; one of another or
 FOLLOWS = 0.7           # correlation of the gyro with the turns of the right attitude, at least
 CLEAR, CLEARER = 0.2, 0.3   # of correlation, that the better of two signs or orders is ahead
 RADIANS, DEGREES = (0.3, 4.0), (15.0, 230.0)    # gyro over turns: 1 or 57.3 within a factor of 4
+SLOWLY = 0.5            # s over which turns show above the noise of an attitude in hover
 FAST, SLOW = 35.0, 12.0     # what turns by over 35 rad/s is past its gyro; below 12 deg/s nothing
                             # manoeuvres
 TILTED = 1.0            # rad: nobody flies tilted by more for a tenth of the time
 ROUND = 6.5             # rad: no angle is more, 2 pi with rounding
+MOVES = 0.1             # rad: angles that vary by more move what flies
+CALM = 10.0             # times less than angles in rad would have it, as where they are in deg
 
 
 def quaternion(draft: Draft) -> None:
@@ -63,6 +67,8 @@ def angles(draft: Draft) -> None:
         return
     values = draft.values(names)
     unit = draft.said_unit('phi', names, UNITS['rad']) or angle_unit(values)
+    if not any(draft.units[name] for name in names) and _is_calm(draft, values):
+        unit = 'deg'
     down = _pitch_down(draft, names, values * factor_of('phi', unit))
     draft.take(EULER, names, unit, role='pose', said=f'roll, pitch, yaw in {unit}'
                + (', pitch with the other sign' if down else ''))
@@ -82,9 +88,12 @@ def rates(draft: Draft) -> None:
     if not unit and draft.attitude is not None and draft.t is not None:
         turned, measured = draft.turning(draft.attitude, values)
         ratio = ratio_of(measured, turned)
+        unit = _unit_by(ratio)
         if ratio is not None:
-            unit = 'rad/s' if RADIANS[0] < ratio < RADIANS[1] else (
-                    'deg/s' if DEGREES[0] < ratio < DEGREES[1] else 'none')
+            unit = unit or 'none'
+        else:       # of a hover, most turns are noise
+            turned, measured = draft.turning(draft.attitude, values, SLOWLY)
+            unit = _unit_by(ratio_of(measured, turned))
     if unit == 'none':
         draft.guess.doubts.append(f'wx: {together(names)} are {ratio:.3g} times the rates of '
                                   'the attitude, which is not a unit')
@@ -98,6 +107,14 @@ def rates(draft: Draft) -> None:
         draft.guess.doubts.append(f'wx: the unit of {together(names)} (rad/s, deg/s)')
         unit = 'rad/s'
     draft.take(RATE, names, unit, role='rate', said=f'body rate in {unit}')
+
+
+def _unit_by(ratio: float | None) -> str:
+    """Return the unit of a gyro by its ratio to the turns of the attitude, '' if unknown."""
+    if ratio is None:
+        return ''
+    return 'rad/s' if RADIANS[0] < ratio < RADIANS[1] else (
+        'deg/s' if DEGREES[0] < ratio < DEGREES[1] else '')
 
 
 def _order(draft: Draft, q: np.ndarray) -> str | None:
@@ -139,6 +156,25 @@ def _is_weight(values: np.ndarray) -> bool:
     length = np.linalg.norm(values, axis=1)
     usual = float(np.nanmedian(length))
     return usual > 0.5 and float(np.nanstd(length)) < 0.01 * usual  # a gyro at rest is less
+
+
+def _is_calm(draft: Draft, angles: np.ndarray) -> bool:
+    """Return whether angles (N, 3) in rad would move the vehicle far more than it moved."""
+    if draft.t is None or np.nanmax(np.nanstd(angles, axis=0)) < MOVES:
+        return False
+    q = from_euler(*angles.T)
+    pairs = []
+    if rates := draft.found[RATE]:
+        factor = factor_of('wx', draft.unit_of(rates, UNITS['rad/s']) or 'rad/s')
+        pairs += [draft.turning(q, factor * draft.values(rates))[::-1]]
+    if np.nanmax(np.nanstd(angles[:, :2], axis=0)) > MOVES:
+        for group, unit in ((POSITION, 'm'), (VELOCITY, 'm/s')):
+            if names := draft.found[group]:
+                values = draft.values(names) * factor_of(
+                    group[0], draft.unit_of(names, UNITS[unit]) or unit)
+                bent = bends(draft, summed(draft, values) if group == VELOCITY else values, q)
+                pairs += [bent] if bent else []
+    return any(0.0 < CALM * np.nanstd(moved) < np.nanstd(led) for moved, led in pairs)
 
 
 def angle_unit(values: np.ndarray) -> str:

@@ -8,7 +8,7 @@ import re
 import numpy as np
 
 from quad_ident_ros.data.guess.draft import Draft, together
-from quad_ident_ros.data.guess.names import TIME
+from quad_ident_ros.data.guess.names import ROW_LABEL, TIME
 from quad_ident_ros.data.mapping import Column, factor_of, UNITS
 
 RATES = 1.0, 10_000.0   # Hz: no log of a flight is slower, or faster, by a factor of two
@@ -25,8 +25,9 @@ def time(draft: Draft) -> None:
     """Take the column of the time."""
     found = [name for name in draft.free if TIME.search(draft.names[name])]
     rising = [name for name in found if _rises(draft.table.columns[name])]
-    first = next(iter(draft.table.columns))
-    if not found and _is_clock(draft.table.columns[first]):
+    first = next((name for name, values in draft.table.columns.items() if not _is_count(values)
+                  or not ROW_LABEL.fullmatch(draft.names[name])), '')
+    if not found and first and _is_clock(draft.table.columns[first]):
         rising = [first]        # in any language
     if not rising and _by_count(draft):
         return

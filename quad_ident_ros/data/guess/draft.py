@@ -9,7 +9,17 @@ import re
 import numpy as np
 
 from quad_ident_ros.data.columns import FORCE, POSITION, VELOCITY
-from quad_ident_ros.data.guess.names import AXES, BARE, NO_UNITS, NOT, plain, TURNED, WANTED
+from quad_ident_ros.data.guess.names import (
+    AXES,
+    BARE,
+    BEHIND,
+    NO_UNITS,
+    NOT,
+    OF_BODY,
+    plain,
+    TURNED,
+    WANTED,
+)
 from quad_ident_ros.data.guess.series import alike, filled, turned
 from quad_ident_ros.data.mapping import Column, factor_of, Mapping
 from quad_ident_ros.data.motive import is_marker
@@ -84,10 +94,11 @@ class Draft:
         assert self.t is not None
         return np.diff(self.t)
 
-    def turning(self, attitude: np.ndarray, gyro: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the rates (n, 3) of attitudes and of the gyro, over the same steps in time."""
+    def turning(self, attitude: np.ndarray, gyro: np.ndarray, over: float = OVER
+                ) -> tuple[np.ndarray, np.ndarray]:
+        """Return the rates (n, 3) of attitudes and of the gyro, over the same steps (s)."""
         assert self.t is not None
-        width = max(1, round(OVER / max(float(np.nanmedian(self.dt())), 1e-6)))
+        width = max(1, round(over / max(float(np.nanmedian(self.dt())), 1e-6)))
         if len(attitude) < 4 * width:
             width = 1
         sums = np.vstack([np.zeros(3), np.cumsum(0.5 * (gyro[1:] + gyro[:-1])
@@ -113,8 +124,9 @@ class Draft:
     def unit_of(self, names: Sequence[str], known: Iterable[str]) -> str:
         """Return the one unit that the names of columns say, '' for none or one not known."""
         units = {self.units[name] for name in names}
-        units = {{'deg': 'deg/s', 'rad': 'rad/s'}.get(one, one) if 'deg/s' in known else one
-                 for one in units}
+        short = {'deg': 'deg/s', 'rad': 'rad/s'} if 'deg/s' in known else (
+            {'ms': 'm/s'} if 'm/s' in known else {})
+        units = {short.get(one, one) for one in units}
         unit = units.pop() if len(units) == 1 else ''
         return unit if unit in known else ''
 
@@ -146,7 +158,8 @@ class Draft:
         """Return the columns of a group of axes, of one prefix, or None."""
         whole = sorted((axes for axes in self._by_prefix(group, entries).values()
                         if len(axes) == len(entries)),
-                       key=lambda axes: sum(len(self.names[name]) for name in axes.values()))
+                       key=lambda axes: (group == VELOCITY and self.of_body(axes.values()), sum(
+                           len(self.names[name]) for name in axes.values())))
         if whole:
             names = [[axes[axis] for axis in entries] for axes in whole]
             if len(names) > 1 and not self._same(group, names[0], names[1]):
@@ -155,9 +168,14 @@ class Draft:
             return names[0]
         by_name = {self.names[name]: name for name in self.free}
         for bare in BARE.get(group, ()) if len(entries) == 3 else ():
-            if all(letter in by_name for letter in bare):
-                return [by_name[letter] for letter in bare]
+            for behind in BEHIND:
+                if all(f'{letter}{behind}' in by_name for letter in bare):
+                    return [by_name[f'{letter}{behind}'] for letter in bare]
         return None
+
+    def of_body(self, names: Iterable[str]) -> bool:
+        """Return whether the names of columns say the axes of the body."""
+        return any(OF_BODY.search(self.names[name]) for name in names)
 
     def numbered(self, group: tuple[str, ...]) -> list[str] | None:
         """
@@ -165,29 +183,31 @@ class Draft:
 
         A fourth column of that name is not an axis, and numbered letters may be anything.
         """
-        for (_, stem), axes in self._by_prefix(group, '01234').items():
+        for (_, stem, _), axes in self._by_prefix(group, '01234').items():
             counted = ''.join(sorted(axes))
             if len(stem) >= SHORTEST and counted in ('012', '123'):
                 return [axes[axis] for axis in counted]
         return None
 
     def _by_prefix(self, group: tuple[str, ...], entries: str
-                   ) -> dict[tuple[str, str], dict[str, str]]:
-        """Return the columns whose names are of a group: what is before them, axis -> name."""
-        found: dict[tuple[str, str], dict[str, str]] = {}
+                   ) -> dict[tuple[str, str, str], dict[str, str]]:
+        """Return the columns whose names are of a group: what is around the axis, axis -> name."""
+        found: dict[tuple[str, str, str], dict[str, str]] = {}
         for name in self.states:
             for axis in entries:
                 match = re.search(AXES[group].format(axis), self.names[name])
                 if match and not (group in (FORCE, VELOCITY) and TURNED.search(
                         self.names[name])):
-                    prefix = self.names[name][:match.start(2)]
-                    found.setdefault((prefix, match.group(2)), {}).setdefault(axis, name)
+                    around = self.names[name][:match.start(2)], match.group(2), match.group(3)
+                    found.setdefault(around, {}).setdefault(axis, name)
         return found
 
     def _same(self, group: tuple[str, ...], one: list[str], other: list[str]) -> bool:
         """Return whether the first of two trios is the plain one, or both say the same."""
         whole = re.compile(AXES[group].format('[wxyz0-4]'))
-        if whole.fullmatch(self.names[one[-1]]) and not whole.fullmatch(self.names[other[-1]]):
+        bare, second = ((match := whole.fullmatch(self.names[names[-1]])) and not match.group(3)
+                        for names in (one, other))
+        if bare and not second or group == VELOCITY and self.of_body(other) > self.of_body(one):
             return True
         a, b = self.values(one), self.values(other)
         if group == POSITION:   # of two vehicles in formation, which move alike

@@ -9,7 +9,7 @@ import numpy as np
 
 from quad_ident_ros.data.columns import FORCE, POSITION, RATE, VELOCITY
 from quad_ident_ros.data.guess.draft import Draft, together
-from quad_ident_ros.data.guess.names import TURNING, WORLD
+from quad_ident_ros.data.guess.names import SAID_WORLD, TURNING, WORLD
 from quad_ident_ros.data.guess.series import ratio_of, unit_length
 from quad_ident_ros.data.mapping import factor_of, UNITS
 from quad_ident_ros.gravity import GRAVITY
@@ -46,8 +46,11 @@ def positions(draft: Draft) -> None:
         with np.errstate(all='ignore'):
             speed = np.linalg.norm(np.diff(draft.values(names), axis=0), axis=1) / draft.dt()
         speed = speed[np.isfinite(speed) & (speed > 0)]
-        unit = 'mm' if len(speed) and np.quantile(speed, 0.9) > QUICK else 'm'
-        unit = _by_velocity(draft, names) or _by_tilt(draft, names) or unit
+        quick = float(np.quantile(speed, 0.9)) if len(speed) else 0.0
+        unit = _by_velocity(draft, names) or _by_tilt(draft, names)
+        if not unit and QUICK < quick < 10 * QUICK:
+            draft.guess.doubts.append(f'px: the unit of {together(names)} (mm, cm)')
+        unit = unit or ('mm' if quick > QUICK else 'm')
     draft.take(POSITION, names, unit or 'm', role='pose', said=f'position in {unit or "m"}')
 
 
@@ -94,7 +97,7 @@ def axes(draft: Draft) -> None:
         elif low > -BELOW * abs(high):
             down, why = False, 'the height'
     known = [found for group in (POSITION, VELOCITY) if (found := draft.found[group])]
-    named = {WORLD.get(tuple(draft.names[name] for name in found)): found for found in known}
+    named = {_named_world([draft.names[name] for name in found]): found for found in known}
     text = ' '.join(draft.names.values())
     if down is None and ('NED' in named or re.search(r'(^|_| )(ned|frd)(_| |$)', text)):
         down, why = True, 'the names'
@@ -104,7 +107,7 @@ def axes(draft: Draft) -> None:
         draft.world = 'NED' if level else 'ENU'
     elif down is not None and draft.attitude is not None and _up(draft.attitude) < 0:
         draft.guess.doubts.append('world, body: by the attitude the vehicle flies upside down')
-    for world in {'NED', 'ENU'} & named.keys() - {draft.world}:
+    for world in named.keys() - {'', draft.world}:
         draft.guess.doubts.append(f'world: {together(named[world])} are {world} by '
                                   f'their names, the others {draft.world} by {why}')
     said = f'by {why}' if why else 'assumed, as nothing shows it'
@@ -124,14 +127,25 @@ def velocities(draft: Draft) -> None:
         unit = 'm/s' if fast <= QUICK else 'cm/s' if place == 'cm' else 'mm/s'
         unit = _nearest(draft, values, unit)
     frame, said = 'world', 'as no stream contradicts it'
-    if any('body' in draft.names[name] for name in names):
+    if draft.of_body(names):
         frame, said = 'body', 'by its name'
+    if frame == 'body' and draft.attitude is None:
+        draft.taken(names, '')
+        draft.guess.said.append(f'{together(names)}: not taken, a velocity in body axes needs an '
+                                'attitude')
+        return
     off = _off(draft, values * factor_of('vx', unit))
     if off is not None and max(off) > BETTER * min(off):
         frame = 'world' if off[0] < off[1] else 'body'
         said = 'by the position' if 'px' in draft.columns else 'by the accelerometer'
     draft.take(VELOCITY, names, unit, frame, role='velocity',
                said=f'velocity in {unit}, {frame} axes, {said}')
+
+
+def _named_world(names: Sequence[str]) -> str:
+    """Return the axes of the world that plain names of a trio say, '' for none."""
+    said = SAID_WORLD.search(names[0])
+    return WORLD.get(tuple(names), said[1].upper() if said else '')
 
 
 def _by_velocity(draft: Draft, names: Sequence[str]) -> str:
@@ -156,6 +170,8 @@ def _by_velocity(draft: Draft, names: Sequence[str]) -> str:
     for unit, factor in (('m', 1.0), ('cm', 100.0), ('mm', 1000.0)):
         if factor / 2 < ratio < 2 * factor:
             return unit
+        if not draft.unit_of(given, UNITS['m/s']) and 0.7 < factor * ratio < 1.4:
+            return 'm'      # and the velocity is in cm/s or mm/s
     draft.guess.doubts.append(f'px: {together(names)} change {ratio:.3g} times as fast as '
                               f'{together(given)} says, which is not a unit')
     return 'm'
@@ -169,22 +185,37 @@ def _by_tilt(draft: Draft, names: Sequence[str]) -> str:
     """
     if draft.attitude is None:
         return ''
-    w, x, y, z = draft.attitude.T
-    up = 1 - 2 * (x ** 2 + y ** 2)
-    leaning = GRAVITY * np.stack([2 * (x * z + w * y), 2 * (y * z - w * x)], axis=-1) / up[:, None]
-    dt = np.append(draft.dt(), 0.0)[:, None]
-    for _ in range(2):      # to a velocity, to a position
-        leaning = np.cumsum(np.nan_to_num(leaning) * dt, axis=0)
-    width = max(1, round(SPAN / max(float(np.nanmedian(draft.dt())), 1e-6)))
-    if len(leaning) < 4 * width:
-        return ''
-    bent = [one[2 * width:] - 2 * one[width:-width] + one[:-2 * width]
-            for one in (draft.values(names)[:, :2], leaning)]
-    ratio = ratio_of(*bent)
+    bent = bends(draft, draft.values(names), draft.attitude)
+    ratio = ratio_of(*bent) if bent else None
     if ratio is None:
         return ''
     return next((unit for unit, factor in (('m', 1.0), ('cm', 100.0), ('mm', 1000.0))
                  if factor / NEAREST < ratio < factor * NEAREST), '')
+
+
+def bends(draft: Draft, place: np.ndarray, attitude: np.ndarray
+          ) -> tuple[np.ndarray, np.ndarray] | None:
+    """
+    Return how a position (N, 3) bends (n, 2), and how a thrust along attitudes (N, 4) bends it.
+
+    None where the record is too short.
+    """
+    w, x, y, z = attitude.T
+    up = 1 - 2 * (x ** 2 + y ** 2)
+    leaning = GRAVITY * np.stack([2 * (x * z + w * y), 2 * (y * z - w * x)], axis=-1) / up[:, None]
+    for _ in range(2):      # to a velocity, to a position
+        leaning = summed(draft, leaning)
+    width = max(1, round(SPAN / max(float(np.nanmedian(draft.dt())), 1e-6)))
+    if len(leaning) < 4 * width:
+        return None
+    first, second = (one[2 * width:] - 2 * one[width:-width] + one[:-2 * width]
+                     for one in (place[:, :2], leaning))
+    return first, second
+
+
+def summed(draft: Draft, values: np.ndarray) -> np.ndarray:
+    """Return the integral (N, k) of values (N, k) over the time."""
+    return np.cumsum(np.nan_to_num(values) * np.append(draft.dt(), 0.0)[:, None], axis=0)
 
 
 def _nearest(draft: Draft, values: np.ndarray, unit: str) -> str:
@@ -201,11 +232,17 @@ def _nearest(draft: Draft, values: np.ndarray, unit: str) -> str:
 
 
 def _off(draft: Draft, speed: np.ndarray) -> list[float] | None:
-    """Return how far off a velocity (N, 3) is, read in world and in body axes, or None."""
-    if draft.attitude is None or draft.t is None:
+    """
+    Return how far off a velocity (N, 3) is, read in world and in body axes, or None.
+
+    Without an attitude it can be read in world axes alone, and held against the position alone.
+    """
+    if draft.t is None or draft.attitude is None and 'px' not in draft.columns:
         return None
-    q = unit_length(draft.attitude)
-    readings = speed, rotate(q, speed)
+    readings = [speed]
+    if draft.attitude is not None:
+        q = unit_length(draft.attitude)
+        readings.append(rotate(q, speed))
     with np.errstate(all='ignore'):
         dt = np.diff(draft.t)[:, None]
         if 'px' in draft.columns:

@@ -17,10 +17,11 @@ from quad_ident_ros.data.guess.names import (
     MOTOR,
     NO_UNITS,
     REPORTED,
+    SAID_PWM,
     SPEED,
 )
 from quad_ident_ros.data.mapping import factor_of, UNITS
-from quad_ident_ros.data.motor_order import about_motors, quad
+from quad_ident_ros.data.motor_order import about_motors, quad, rotors_of
 from quad_ident_ros.data.record import INPUTS
 from quad_ident_ros.data.signal_kind import are_signals, kinds_of, TITLES
 
@@ -39,12 +40,14 @@ def motors(draft: Draft) -> None:
     reported = [names for names in signals if names not in others
                 and not COMMANDED.search(draft.names[names[0]])
                 and (others or REPORTED.search(draft.names[names[0]]))]
-    measured = next((names for names in (*speeds, *reported) if names not in asked), None)
-    if measured:
+    for measured in (*speeds, *reported):
+        if measured in asked:
+            continue
         values, unit = draft.logged(measured), _unit_of(draft, 'rotor1', measured)
         if np.nanmin(values) >= 0 and np.nanmedian(values) * factor_of('rotor1', unit) > SLOWEST:
             draft.take([f'rotor{k}' for k in range(1, len(measured) + 1)], measured, unit,
                        role='rotors', said=f'measured rotor speeds in {unit}')
+            break
     if set(INPUTS) <= set(draft.free) and not are_signals(draft.logged(INPUTS)) and all(
             column.names == (role,) for role, column in draft.columns.items()):
         draft.take(INPUTS, INPUTS, role='commands', said='thrust and moments, for the other '
@@ -63,6 +66,9 @@ def motors(draft: Draft) -> None:
         draft.take([f'cmd{k}' for k in range(1, len(names) + 1)], names, unit,
                    role='commands', said=f'rotor speed commands in {unit}')
         return
+    if SAID_PWM.search(draft.names[names[0]]) and list(kinds) == ['pwm']:
+        rotors = draft.guess.motors and rotors_of(draft.guess.motors)
+        draft.guess.motors = about_motors(rotors or (), 'the names of the columns', 'pwm')
     if CRAZYFLIE.fullmatch(draft.names[names[0]]) and list(kinds) == ['duty16']:
         draft.guess.motors = about_motors(quad(*AROUND), 'the order of the Crazyflie', 'duty16')
     what = ' or '.join(TITLES[kind] for kind in kinds)

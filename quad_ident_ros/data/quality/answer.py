@@ -14,9 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import CubicSpline
 
+from quad_ident_ros.data.attitudes import attitudes_of
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.once import once
-from quad_ident_ros.data.quality.series import attitudes_of
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.model.attitude import conjugate, continuous, product, rotate
 from quad_ident_ros.model.vehicle import Vehicle

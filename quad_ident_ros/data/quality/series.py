@@ -8,16 +8,11 @@ import numpy as np
 from scipy.ndimage import maximum_filter1d
 from scipy.signal import fftconvolve
 
-from quad_ident_ros.data.record import EULER, FlightRecord, QUATERNION
+from quad_ident_ros.data.attitudes import attitudes_of
+from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.data.streams import slerp
 from quad_ident_ros.gravity import GRAVITY
-from quad_ident_ros.model.attitude import (
-    conjugate,
-    continuous,
-    product,
-    quaternion_from_euler,
-    rotate,
-)
+from quad_ident_ros.model.attitude import conjugate, continuous, product, rotate
 
 WIDTH = 0.2       # s, full width of the smoothing window
 GAP = 3.0         # median periods from which on a step in time is a gap
@@ -25,18 +20,6 @@ MOST = 100_000    # samples that the checks look at: of more, one of so many, ov
 DIRECT = 2001     # samples of a window, from which on Fourier transforms take fewer steps
 NEAR, SHARE_ERROR, ALIKE = 0.25, 0.1, 0.5   # of a share that is 1, its error, and a correlation
 COARSEST = 0.1 * WIDTH  # s between them, however long a record is: smoothing needs a few
-
-
-def attitudes_of(record: FlightRecord) -> np.ndarray | None:
-    """Return the unit quaternions of a record, (N, 4), or None where one is not a rotation."""
-    if record.has(*QUATERNION):
-        q = record.stack(*QUATERNION)
-    elif record.has(*EULER):
-        q = quaternion_from_euler(record.stack(*EULER))
-    else:
-        return None
-    norm = np.linalg.norm(q, axis=-1, keepdims=True)
-    return None if norm.min() < 1e-3 else q / norm
 
 
 @dataclass(frozen=True, eq=False)

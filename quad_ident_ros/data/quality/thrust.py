@@ -11,9 +11,9 @@ from quad_ident_ros.data.quality import rotors, units
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.series import Grid
 from quad_ident_ros.data.record import FlightRecord
-from quad_ident_ros.data.signal_kind import LINEAR
+from quad_ident_ros.data.signal_kind import described, kinds_of, LINEAR
 from quad_ident_ros.data.thrust_level import BY_LOG, FULL_SPEED, mass_to_carry
-from quad_ident_ros.model.motors import are_thrusts
+from quad_ident_ros.model.motors import are_thrusts, KINDS
 from quad_ident_ros.model.vehicle import Vehicle
 
 APART = 10.0      # times too much or too little: no vehicle file is that wrong,
@@ -62,7 +62,8 @@ def carried(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
                 f'which {vehicle.name} flies: they are stuck, belong to something else, or the '
                 'vehicle file is of another vehicle',
                 without(grid.t, bad, 'record the commands that the rotors follow in rad/s, and '
-                        'give the thrust coefficient in N/(rad/s)^2')))
+                        'give the thrust coefficient in N/(rad/s)^2'
+                        + _or_signals(record, vehicle))))
     return found
 
 
@@ -82,7 +83,21 @@ def other_vehicle(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding
         f'the commands give {ratio:.2g} times the thrust with which {vehicle.name} flies{more}: '
         'mass, thrust coefficient and inertia seem to be those of another vehicle',
         'name the vehicle that flew with --vehicle, or weigh it and measure its thrust'
-        + (f'; or {units.OF_ROTORS}' if are_thrusts(vehicle.motors) else ''))]
+        + (f'; or {units.OF_ROTORS}' if are_thrusts(vehicle.motors) else '')
+        + _or_signals(record, vehicle))]
+
+
+def _or_signals(record: FlightRecord, vehicle: Vehicle) -> str:
+    """Return what to do where commands that were recorded as speeds are signals, '' if not."""
+    names = record.numbered('cmd')
+    if record.info.get('commands'):     # they were made of signals
+        return ''
+    kinds = [kind for kind in kinds_of(record.stack(*names), vehicle.hover_speed,
+                                       (vehicle.speed_min, vehicle.speed_max)) if KINDS[kind]]
+    if len(kinds) != 1:
+        return ''
+    return (f'; if they are signals to the motors ({described(kinds[0])}, by their size), name '
+            f'their columns output1 to output{len(names)}')
 
 
 def curve(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:

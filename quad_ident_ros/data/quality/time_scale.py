@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """A time that is not in seconds, which all streams of a motion tell alike."""
 
+from quad_ident_ros.data.attitudes import attitudes_of
 from quad_ident_ros.data.quality.finding import Finding
-from quad_ident_ros.data.quality.series import attitudes_of
 from quad_ident_ros.data.quality.timing import SLOWEST
 from quad_ident_ros.data.record import EULER, FlightRecord, QUATERNION
 from quad_ident_ros.data.time_scale import clues, is_wrong, Motion, scale_of, unit_of

@@ -75,6 +75,8 @@ def _of_vehicle(path: Path, table: Table, mapping: Mapping, name: str) -> list[F
         about = {'motors': found.motors} if found.motors else {}
         notes = [f'cells between {table.how}' if table.how != 'Parquet' else 'Parquet',
                  *found.said]
+    elif motors := _motors_named(table, mapping):
+        about = {'motors': motors}
     parts = _recordings(path, table, mapping)
     records = [record_of(path, part, mapping, notes) for part in parts]
     if name:
@@ -89,6 +91,31 @@ def _of_vehicle(path: Path, table: Table, mapping: Mapping, name: str) -> list[F
         'notes': [*record.info['notes'], f'the time restarts in the table: this is recording '
                                          f'{k} of {len(records)}']})
             for k, record in enumerate(records, 1)]
+
+
+def _motors_named(table: Table, mapping: Mapping) -> dict[str, Any]:
+    """
+    Return what the names of outputs that a mapping names say of the motors, {} for nothing.
+
+    As the guess has it, whose lines the mapping may be; an order in it is of who wrote it.
+    """
+    outputs = _outputs(mapping)
+    if not outputs or mapping.actuators is not None and mapping.actuators.order:
+        return {}
+    found = guess(table, Mapping())
+    names = _outputs(found.mapping)
+    if not found.motors or set(outputs) != set(names):
+        return {}
+    rotors = found.motors['rotors']
+    return {**found.motors, 'rotors': [rotors[names.index(name)] for name in outputs] if rotors
+            else []}
+
+
+def _outputs(mapping: Mapping) -> list[str]:
+    """Return the columns of the outputs in a mapping, in their order."""
+    numbers = sorted(int(name.removeprefix('output')) for name in mapping.columns
+                     if name.startswith('output'))
+    return [mapping.columns[f'output{k}'].names[0] for k in numbers]
 
 
 def _recordings(path: Path, table: Table, mapping: Mapping) -> list[Table]:

@@ -13,6 +13,7 @@ from bag_files import (
     imu,
     lists,
     MAV,
+    named_poses,
     odometry,
     poses,
     PX4,
@@ -278,6 +279,62 @@ def test_any_type_is_read_by_its_definition_and_the_path_of_a_field(tmp_path):
     topics['rate'] = {'topic': '/lab', 'field': 'where.place'}
     refused(path, "no field 'place'", 'position, orientation',
             mapping=mapping_from({'topics': topics}, 'm'))
+
+
+@pytest.mark.parametrize('others, field', [
+    ((), ''), ((), 'poses[].pose'), (('cf2',), 'poses[1].pose'), (('cf2',), 'poses[cf1].pose')])
+def test_a_pose_of_a_list_is_read_by_its_place_or_name(tmp_path, others, field):
+    """Crazyswarm2 and others publish the bodies of a motion capture in one message."""
+    path = write2(tmp_path / 'bag', named_poses(SMALL, *others))
+    mapping = mapping_from({'topics': {'pose': {'topic': '/poses', 'field': field}}},
+                           'm') if field else None
+    agrees(load(path, mapping), PLACE, ATTITUDE)
+
+
+def test_a_body_that_is_not_seen_is_missing_in_its_message_alone(tmp_path):
+    rows = named_poses(SMALL, 'cf2')
+    for k in range(0, len(rows), 9):
+        rows[k][3]['poses'].pop()
+    path = write2(tmp_path / 'bag', rows)
+    topics = {'pose': {'topic': '/poses', 'field': 'poses[cf1].pose'}}
+    seen = np.arange(len(SMALL)) % 9 > 0
+    np.testing.assert_allclose(load(path, mapping_from({'topics': topics}, 'm')).stack(*PLACE),
+                               SMALL.stack(*PLACE)[seen])
+    topics['pose']['field'] = 'poses[cf3].pose'
+    refused(path, "'poses[cf3]' is not there; there are cf2", mapping=mapping_from(
+        {'topics': topics}, 'm'))
+    topics['pose']['field'] = 'poses[].pose'
+    refused(path, 'several poses; name one', mapping=mapping_from({'topics': topics}, 'm'))
+    topics['pose']['field'] = 'header[0].frame_id'
+    refused(path, "'header' is no list", mapping=mapping_from({'topics': topics}, 'm'))
+
+
+def test_a_pose_whose_name_is_in_a_list_beside_it(tmp_path):
+    rows = [('/states', 'gazebo_msgs/msg/ModelStates', ns, {
+        'name': ['ground', 'quad'], 'pose': [{'orientation': {'w': 1.0}}, fields['pose']['pose']]})
+            for _, _, ns, fields in odometry(SMALL)]
+    agrees(load(write2(tmp_path / 'bag', rows), mapping_from(
+        {'topics': {'pose': {'topic': '/states', 'field': 'pose[quad]'}}}, 'm')), PLACE, ATTITUDE)
+
+
+def test_of_the_velocities_of_mavros_that_of_the_world_is_read(tmp_path):
+    rows = [(f'/mavros/local_position/{name}', TWIST, ns, {
+        'header': header(ns, frame), 'twist': {'linear': xyz(way * SMALL.stack(*SPEED)[k])}})
+        for k, (_, _, ns, _) in enumerate(poses(SMALL))
+        for name, frame, way in (('velocity_body', 'base_link', -1), ('velocity_local', 'map', 1))]
+    agrees(load(write2(tmp_path / 'bag', poses(SMALL) + rows)), SPEED)
+
+
+def test_stamps_of_0_before_a_clock_of_simulation_do_not_cost_the_others(tmp_path):
+    """The times of receipt were used, and a simulation at half the speed took twice as long."""
+    rows = [(topic, kind, START + 2 * (ns - START), {**fields, 'header': header(
+        max(ns - START - 100_000_000, 0))})
+            for topic, kind, ns, fields in odometry(SMALL) + imu(SMALL)]
+    read = load(write2(tmp_path / 'bag', rows))
+    late = int(np.sum(SMALL.t - SMALL.t[0] <= 0.1 + 1e-9))
+    np.testing.assert_allclose(read.t - read.t[0], SMALL.t[late:] - SMALL.t[late], atol=1e-6)
+    np.testing.assert_allclose(read.stack(*PLACE), SMALL.stack(*PLACE)[late:])
+    assert f'topic /imu: {late} messages before the clock began' in '; '.join(read.info['notes'])
 
 
 def test_stamps_of_several_clocks_give_way_to_times_of_receipt(tmp_path):

@@ -6,6 +6,7 @@ from contextlib import suppress
 import gzip
 import io
 import os
+import pickle
 import socket
 import struct
 import tarfile
@@ -77,6 +78,8 @@ KINDS = {
     'matlab': (b'MATLAB 5.0 MAT-file, x'.ljust(128, b'\0'), 'MATLAB', 'as CSV'),
     'matlab_hdf5': (b'MATLAB 7.3 MAT-file, x'.ljust(512, b'\0') + b'\x89HDF\r\n\x1a\n', 'MATLAB',
                     'as CSV'),
+    'feather': (b'ARROW1\0\0' + bytes(40), 'Arrow', 'Parquet or CSV'),
+    'pickle': (pickle.dumps({'t': list(range(40))}), 'pickle of Python', 'CSV or Parquet'),
     'hdf5': (b'\x89HDF\r\n\x1a\n' + bytes(40), 'HDF5', 'CSV or Parquet'),
     'numpy': (b'\x93NUMPY\x01\0', 'NumPy', 'as CSV'),
     'lfs': (b'version https://git-lfs.github.com/spec/v1\noid sha256:ab\n', 'Git LFS', 'pull'),

@@ -236,6 +236,25 @@ def test_a_vehicle_file_of_another_vehicle_is_told_by_its_thrust(thrust):
     assert findings(flight(), known) == ()
 
 
+@pytest.mark.parametrize('low, high, what', [
+    (1000, 2000, 'PWM, 1000 to 2000'), (0, 1, 'normalised, 0 to 1'), (0, 100, 'per cent'),
+    (0, 65535, 'duty, 0 to 65535')])
+def test_signals_in_the_columns_of_speeds_are_told_and_the_remedy_reads_them(
+        tmp_path, low, high, what):
+    vehicle = load_vehicle('hummingbird')
+    flown = fly_closed_loop(vehicle, {}, 'figure8', duration=6.0, seed=2)
+    signals = low + (high - low) * flown.stack(*CMD) / vehicle.speed_max
+    signals = np.round(signals) if high > 2000 else signals
+    found = findings(changed(flown, **named(CMD, signals)), vehicle)
+    told = [one for one in found if f'signals to the motors ({what}' in one.remedy]
+    assert told and 'output1 to output4' in told[0].remedy
+    path = tmp_path / 'flight.csv'
+    write_csv(path, changed(flown, **dict.fromkeys(CMD), **{
+        f'output{k}': column for k, column in enumerate(signals.T, 1)}))
+    np.testing.assert_allclose(load(path, vehicle=vehicle).stack(*CMD), flown.stack(*CMD),
+                               atol=0.05)
+
+
 @pytest.mark.parametrize('thrust', [0.6, 1.6])
 def test_a_payload_or_a_battery_makes_no_other_vehicle(thrust):
     file = replace(VEHICLE, thrust_coefficient=thrust * VEHICLE.thrust_coefficient,

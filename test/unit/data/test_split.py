@@ -67,6 +67,41 @@ def test_a_jump_of_the_heading_is_seen():
     assert jumps(turned(WHOLE, 12.0, np.radians(12.0))) == []
 
 
+POSES = changed(WHOLE, **dict.fromkeys(('vx', 'vy', 'vz', 'wx', 'wy', 'wz')))
+
+
+def test_poses_alone_jump_where_no_vehicle_is_as_fast():
+    """As of a motion capture that takes another body, or whose origin is set in flight."""
+    [(before, after, why)] = jumps(moved(POSES, 9.0, 2.5))
+    assert 8.97 <= before <= 9.0 <= after <= 9.02 and 'position jumps by 2.5 m' in why
+    [(before, after, why)] = jumps(turned(POSES, 12.0, np.radians(35.0)))
+    assert after - before < 0.03 and 'heading jumps by 3' in why
+    assert jumps(POSES) == []
+    assert jumps(moved(POSES, 9.0, 6.0, over=0.2)) == []    # at 30 m/s: it may have flown
+    assert jumps(moved(POSES, 8.0, 2.5, until=8.3)) == []   # a glitch, which comes back
+
+
+@pytest.mark.parametrize('every', [10, 33])
+def test_poses_that_are_held_do_not_jump(every):
+    fast = changed(POSES, **{name: 8.0 * POSES.columns[name] for name in ('px', 'py', 'pz')})
+    rows = np.arange(len(POSES)) // every * every
+    assert jumps(changed(fast, **{name: values[rows] for name, values in
+                                  fast.columns.items()})) == []
+    once = np.where((POSES.t > 8.0) & (POSES.t < 9.0), rows, np.arange(len(POSES)))
+    assert jumps(changed(fast, **{name: values[once] for name, values in
+                                  fast.columns.items()})) == []
+
+
+def test_a_jump_of_a_heading_in_angles_is_seen(tmp_path):
+    record = turned(WHOLE, 12.0, np.radians(35.0))
+    angles = changed(record, **dict.fromkeys(('qw', 'qx', 'qy', 'qz')), **dict(zip(
+        ('phi', 'theta', 'psi'), record.euler().T, strict=True)))
+    [(before, after, why)] = jumps(angles)
+    assert after - before < 0.03 and 'heading jumps by 3' in why
+    round_and_round = changed(angles, psi=(angles.columns['psi'] + np.pi) % (2 * np.pi))
+    assert len(jumps(round_and_round)) == 1
+
+
 def test_what_comes_back_is_no_reset():
     assert jumps(moved(WHOLE, 9.0, 3.0, until=9.1)) == []
 
@@ -79,7 +114,7 @@ def test_what_is_only_fast_or_in_other_units_is_no_reset():
     assert jumps(changed(WHOLE, vx=-30 * columns['vx'])) == []
     held = np.repeat(40 * columns['px'][::10], 10)
     assert jumps(changed(WHOLE, px=held, vx=40 * columns['vx'])) == []
-    assert jumps(changed(moved(WHOLE, 9.0, 3.0), vx=None)) == []
+    assert jumps(changed(moved(WHOLE, 9.0, 3.0, over=0.1), vx=None)) == []
 
 
 def test_a_gap_is_no_jump():

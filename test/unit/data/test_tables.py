@@ -140,7 +140,7 @@ def test_angles_and_rotor_speeds_have_the_unit_of_their_names_and_a_charge_is_no
 
 
 @pytest.mark.parametrize('separator, comma', [(';', True), (';', False), ('\t', False),
-                                              ('\t', True)])
+                                              ('\t', True), (' | ', False)])
 def test_separators_and_decimal_commas(tmp_path, separator, comma):
     read = load(table(tmp_path, others(), separator=separator, comma=comma))
     close(read)
