@@ -25,8 +25,9 @@ class Judgement:
     What was judged of a Selection.
 
     model: all effects that are present; material: those of them that matter; stand_ins: those that
-    would, but have most of their parameters at bounds or untold; untold {column: (least, most)}:
-    what errors of the commands may have made; weights {candidate: Weight} and
+    would, but have most of their parameters at bounds or untold; nuisances (Z,) of each flight,
+    the one held out last, with gusts, which the model's vectors do not have; untold {column:
+    (least, most)}: what errors of the commands may have made; weights {candidate: Weight} and
     probability {effect: of being present}; without {candidate: Model without it};
     before: the Ends of the nominal vehicle with the nuisances of each flight; left_out: those of
     each flight by the model fitted to the others; noises: the Noise of each flight, noise: its
@@ -38,6 +39,7 @@ class Judgement:
     model: Model
     material: tuple
     stand_ins: tuple
+    nuisances: list[np.ndarray]
     untold: dict[int, tuple[float, float]]
     weights: dict
     probability: dict
@@ -111,13 +113,15 @@ def judge(bench: Bench) -> Judgement:
     else:
         improbable = tuple(cause for cause in model.effects if cause in absent)
         final = bench.absent(model, improbable) if improbable else model
+    own, left_out = [vector - final.z for vector in final.vectors], bench.left_out(final)
+    final = bench.without_gusts(final)
     ends = _nominal_ends(bench, final)
     return Judgement(final, in_forms_of(final.effects, material),
-                     in_forms_of(final.effects, stand_ins), untold,
+                     in_forms_of(final.effects, stand_ins), own, untold,
                      dict(zip(in_forms_of(final.effects, weights), weights.values(), strict=True)),
                      present,
                      dict(zip(in_forms_of(final.effects, without), without.values(), strict=True)),
-                     ends, bench.left_out(final), noises, noise_gaps,
+                     ends, left_out, noises, noise_gaps,
                      remaining(final.gap, noise, rules),
                      unexplained(final.gap, gaps.gap(ends), noise, bool(material), rules))
 
