@@ -112,6 +112,24 @@ def test_gusts_that_stay_the_same_are_a_steady_wind():
     assert np.abs(found - steady).max() < 1e-9
 
 
+def test_gusts_blow_along_a_part_of_a_recording_as_along_a_whole_one():
+    # A part, such as a flight after minutes on the ground, has the time of the recording.
+    course, start = steps(VEHICLE), state(velocity=(2, 1, 0))
+    gusts = np.linspace(-5.0, 5.0, KNOTS)
+    late = replace(course, t=course.t + 300.0, stamps=course.stamps + 300.0, span=None)
+    found = [in_gusts(VEHICLE, DRAGS, gusts, one, start) for one in (course, late)]
+    assert np.abs(found[1] - found[0]).max() < 1e-9
+
+
+def test_a_rollout_has_the_gusts_of_its_part_of_the_flight():
+    course, start = steps(VEHICLE, seconds=4.0), state(velocity=(2, 1, 0))
+    theta = vector(DRAGS, VEHICLE)
+    theta[SLICES['gusts']][:KNOTS] = np.linspace(-5.0, 5.0, KNOTS)
+    whole = predict(VEHICLE, theta, course, start[None], [0], len(course.t) - 1)[0]
+    short = predict(VEHICLE, theta, course, whole[300][None], [300], 20)[0]
+    assert np.abs(short - whole[300:321]).max() < 1e-9
+
+
 def test_gusts_do_nothing_where_nothing_is_felt_of_the_air():
     course, gusts = steps(BARE), np.linspace(-5.0, 5.0, KNOTS)
     assert (in_gusts(BARE, {}, gusts, course, state()) == roll(BARE, {}, course, state())).all()
