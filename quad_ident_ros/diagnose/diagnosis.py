@@ -133,7 +133,7 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
                                  rules),
         nuisances=nuisances_as_data(
             tuple(cause.nuisance for cause in selection.best.chosen if cause.nuisance),
-            judged.nuisances, intake.late, intake.clocks, prompt),
+            [z - model.z for z in judged.fitted.vectors], intake.late, intake.clocks, prompt),
         flights=intake.names[:-1], held_out=intake.names[-1],
         flight_checks=verdict.flight_checks,
         findings=(*intake.findings, *advice.at_bounds(judged, vehicle, rules),

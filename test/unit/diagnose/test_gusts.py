@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Wind that changes along a flight, flown in a simulator that is not the library's."""
 
+from dataclasses import replace
+
 import numpy as np
 from plain_controllers import Cascade
 from plain_simulators import One, turned
@@ -92,6 +94,16 @@ def test_gusts_are_each_flights_own_and_stay_in_the_gap(gusty):
     # No simulation predicts them, whatever is known of the vehicle.
     assert gusty.verdict[-1] == 'unknown' and gusty.unknown[0].channel in ('Fx', 'Fy')
     assert gusty.gap.after['velocity'] > 2.0 * gusty.gap.noise['velocity']
+
+
+def test_gaps_with_and_without_an_effect_have_no_gusts():
+    # Of the drag of the file gusts would still make a force where that of the body is taken out.
+    file = replace(load_vehicle('hummingbird'), linear_drag=(0.05, 0.05, 0.05),
+                   effects={'wind': {'x': 1.0}})
+    found = diagnose([flight(0, True)], file)
+    assert 'gusts' in found.nuisances and 'body_drag' in found.verdict
+    without, gap = found.gap.without['body_drag'], found.gap
+    assert without['velocity'] > gap.after['velocity'] > 2.0 * gap.noise['velocity']
 
 
 def test_still_air_has_no_gusts():
