@@ -20,6 +20,7 @@ from quad_ident_ros.diagnose.measure import TRANSLATION
 from quad_ident_ros.diagnose.noise import noise_of
 from quad_ident_ros.diagnose.select import select
 from quad_ident_ros.effects.registry import GUSTS
+from quad_ident_ros.greybox.flights import inertial
 
 
 def beside_gusts(bench: Bench, judged: Judgement, intake: Intake, causes: tuple[Candidate, ...],
@@ -28,9 +29,9 @@ def beside_gusts(bench: Bench, judged: Judgement, intake: Intake, causes: tuple[
     Return a Bench and its Judgement, with gusts where a force is unexplained that these may be.
 
     The whole search is repeated with gusts among the nuisances. Where its best set has none, all
-    stays as it is.
+    stays as it is. Where the force of the air is taken from the records, no gusts act.
     """
-    if not {*judged.unexplained} & {*TRANSLATION}:
+    if inertial(intake.flights) or not {*judged.unexplained} & {*TRANSLATION}:
         return bench, judged
     selection = select(intake.flights, bench.vehicle, causes, bench.rules, on_progress, gusty=True)
     if not any(cause.effect == GUSTS.name for cause in selection.best.chosen):
