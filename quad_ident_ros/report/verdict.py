@@ -58,13 +58,13 @@ def verdict_line(found: Diagnosis) -> str:
 
 
 def _gusts_of(found: Diagnosis) -> str:
-    """Return in words that what is unknown may be gusts, where flights have some."""
+    """Return in words that a force that is unknown may be gusts, where flights have some."""
     one = (found.nuisances or {}).get(GUSTS.name)
-    if one is None:
+    if one is None or not any(row.channel[0] == 'F' for row in found.unknown):
         return ''
     values = np.array([*one['values'], one['held_out']])
-    return (f'; a wind that changes along the flights by {np.sqrt(np.mean(values ** 2)):.2g} m/s '
-            'fits it, which no simulation predicts')
+    return (f'; a wind that changes by {np.sqrt(np.mean(values ** 2)):.2g} m/s along each flight '
+            'would fit, but no simulation predicts it')
 
 
 def _others(found: Diagnosis) -> str:
@@ -180,7 +180,8 @@ def _needed(found: Diagnosis) -> tuple[str, ...]:
     gap = found.gap
     off = any(gap.before[name] ** 2 - gap.before_own[name] ** 2 > tolerance ** 2
               for name, tolerance in found.tolerance.items())
-    return tuple(found.nuisances or ()) if off else ()
+    # Gusts are in neither gap: nothing is nearer by them.
+    return tuple(name for name in found.nuisances or () if name != GUSTS.name) if off else ()
 
 
 def _mend_flights(found: Diagnosis) -> str:
