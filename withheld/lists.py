@@ -26,5 +26,5 @@ NOISES = {
     EVALUATION: ('laplace', 'breathing', 'uneven')}
 STRANGERS = {
     DEVELOPMENT: ('periodic_force', 'tether', 'thrust_exponent', 'backlash', 'updraft', 'slosh',
-                  'ceiling', 'neighbours', 'compass', 'branches', 'leash'),
-    EVALUATION: ('wall', 'whirl', 'stutter', 'recoil')}
+                  'ceiling', 'neighbours', 'compass', 'branches', 'leash', 'recoil'),
+    EVALUATION: ('wall', 'whirl', 'stutter', 'keel')}

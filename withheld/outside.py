@@ -310,6 +310,23 @@ class Recoil(Influence):
         return force, np.cross(self.place, force)
 
 
+class Keel(Influence):
+    """
+    A balloon on a mast above and as much ballast below: no weight, but a moment towards upright.
+
+    It grows with the lean, as that of a keel does: H. Lamb, Statics, 1912, on bodies that float.
+    """
+
+    def __init__(self, size, weight, radius, rng):
+        """Take the moment, N m, for a lean of 1 rad."""
+        self.moment = 0.03 * size * weight * radius
+
+    def wrench(self, now):
+        """Return the moment, which turns the body's vertical to the world's."""
+        x, y, _ = now.rotation[2]
+        return np.zeros(3), self.moment * np.array([-y, x, 0.0])
+
+
 # Each with what of the vehicle its size is measured by.
 KINDS = {'periodic_force': (Periodic, 'weight'), 'tether': (Tether, 'weight'),
          'updraft': (Updraft, 'weight'), 'thrust_exponent': (Exponent, 'hover'),
@@ -318,4 +335,4 @@ KINDS = {'periodic_force': (Periodic, 'weight'), 'tether': (Tether, 'weight'),
          'wall': (Wall, 'radius', 'weight'), 'whirl': (Whirl, 'weight'),
          'stutter': (Stutter, 'rotors'), 'compass': (Compass,),
          'branches': (Branches, 'weight', 'radius'), 'leash': (Leash, 'weight'),
-         'recoil': (Recoil, 'weight', 'radius')}
+         'recoil': (Recoil, 'weight', 'radius'), 'keel': (Keel, 'weight', 'radius')}

@@ -25,11 +25,13 @@ from quad_ident_ros.diagnose.noise import noise_in
 from quad_ident_ros.diagnose.nuisances import nuisances_of
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.diagnose.selection import Selection
-from quad_ident_ros.effects.registry import EFFECTS, PLACES
+from quad_ident_ros.effects.registry import EFFECTS, GUSTS, PLACES, SLICES
 from quad_ident_ros.greybox.estimate import Estimate
 from quad_ident_ros.greybox.linear import Slopes, slopes_at, WRENCH
 from quad_ident_ros.greybox.parameters import NAMES, nominal, SPLIT
 from quad_ident_ros.model.vehicle import Vehicle
+
+GUSTY = [SPLIT + place for place in range(SLICES[GUSTS.name].start, SLICES[GUSTS.name].stop)]
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,6 +95,15 @@ class Bench:
         held_out = self._nuisances(-1, estimate.z, chosen, fixed)
         vectors = (*estimate.vectors, estimate.z + held_out)
         return Model(chosen, estimate, vectors, self.ends(vectors))
+
+    def without_gusts(self, model: Model) -> Model:
+        """Return a Model whose predictions know nothing of gusts, as no simulation does."""
+        vectors = tuple(vector.copy() for vector in model.vectors)
+        if all((vector[GUSTY] == model.z[GUSTY]).all() for vector in vectors):
+            return model
+        for vector in vectors:
+            vector[GUSTY] = model.z[GUSTY]
+        return replace(model, vectors=vectors, ends=self.ends(vectors))
 
     def ends(self, vectors: tuple) -> tuple:
         """Return the Ends of all flights with a vector (Z,) each."""

@@ -122,13 +122,13 @@ def _share(name: str, form: Form, forms: Sequence[Form], rules: Rules) -> float:
     return shares[forms.index(form)]
 
 
-def nuisance_candidates(vehicle: Vehicle, tracks: list, differ: Collection[str] = ()
-                        ) -> tuple[Candidate, ...]:
+def nuisance_candidates(vehicle: Vehicle, tracks: list, differ: Collection[str] = (),
+                        gusty: bool = False) -> tuple[Candidate, ...]:
     """
     Return the Candidates for the nuisances of Tracks, which are not effects.
 
     differ: names of those by which flights only differ.
     """
     kinds = (kind.differing if kind.name in differ else kind
-             for kind in nuisances(vehicle, tracks))
+             for kind in nuisances(vehicle, tracks, gusty))
     return tuple(Candidate(kind.name, kind.name, kind.columns, nuisance=kind) for kind in kinds)

@@ -17,6 +17,7 @@ from quad_ident_ros.diagnose.bench import Bench
 from quad_ident_ros.diagnose.candidates import candidates
 from quad_ident_ros.diagnose.ceiling import ceiling_of
 from quad_ident_ros.diagnose.form_unknown import effects_of_unknown_form
+from quad_ident_ros.diagnose.gusts import beside_gusts
 from quad_ident_ros.diagnose.in_closed_loop import in_closed_loop
 from quad_ident_ros.diagnose.in_simulator import gap_in_simulator, refuse_inertial
 from quad_ident_ros.diagnose.intake import take_in
@@ -95,7 +96,11 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
     bench = Bench(intake.flights, (*intake.tracks, intake.held_out), vehicle, selection, noise,
                   rules)
     judged = judge(bench)
-    told(0.85)
+    told(0.8)
+    bench, judged = beside_gusts(bench, judged, intake, causes,
+                                 lambda share: told(0.8 + 0.1 * share))
+    selection, noise = bench.selection, bench.noise
+    told(0.9)
     z0, model = nominal(vehicle), judged.model
     whole = np.median([whole_noise(raw, 1.0 - 1.0 / raw.shape[1])
                        for raw in model.estimate.residuals], axis=0)
@@ -127,8 +132,8 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
         fly_next=advice.fly_next(selection, intake.flights, vehicle, model.z, verdict, unseen,
                                  rules),
         nuisances=nuisances_as_data(
-            tuple(cause.nuisance for cause in model.chosen if cause.nuisance),
-            [z - model.z for z in model.vectors], intake.late, intake.clocks, prompt),
+            tuple(cause.nuisance for cause in selection.best.chosen if cause.nuisance),
+            [z - model.z for z in judged.fitted.vectors], intake.late, intake.clocks, prompt),
         flights=intake.names[:-1], held_out=intake.names[-1],
         flight_checks=verdict.flight_checks,
         findings=(*intake.findings, *advice.at_bounds(judged, vehicle, rules),

@@ -25,11 +25,12 @@ class Judgement:
     What was judged of a Selection.
 
     model: all effects that are present; material: those of them that matter; stand_ins: those that
-    would, but have most of their parameters at bounds or untold; untold {column: (least, most)}:
-    what errors of the commands may have made; weights {candidate: Weight} and
-    probability {effect: of being present}; without {candidate: Model without it};
+    would, but have most of their parameters at bounds or untold; fitted: the model with gusts in
+    its vectors, which that and those without an effect do not have; untold {column: (least,
+    most)}: what errors of the commands may have made; weights {candidate: Weight} and probability
+    {effect: of being present}; without {candidate: Model without it};
     before: the Ends of the nominal vehicle with the nuisances of each flight; left_out: those of
-    each flight by the model fitted to the others; noises: the Noise of each flight, noise: its
+    each flight by the fitted model of the others; noises: the Noise of each flight, noise: its
     {group: gap};
     remaining: {group: gap beyond tolerance}; unexplained: those of them beyond the error of form
     that the effects named may have.
@@ -38,6 +39,7 @@ class Judgement:
     model: Model
     material: tuple
     stand_ins: tuple
+    fitted: Model
     untold: dict[int, tuple[float, float]]
     weights: dict
     probability: dict
@@ -111,13 +113,15 @@ def judge(bench: Bench) -> Judgement:
     else:
         improbable = tuple(cause for cause in model.effects if cause in absent)
         final = bench.absent(model, improbable) if improbable else model
+    fitted, final = final, bench.without_gusts(final)
+    without = {cause: bench.without_gusts(one) for cause, one in without.items()}
     ends = _nominal_ends(bench, final)
     return Judgement(final, in_forms_of(final.effects, material),
-                     in_forms_of(final.effects, stand_ins), untold,
+                     in_forms_of(final.effects, stand_ins), fitted, untold,
                      dict(zip(in_forms_of(final.effects, weights), weights.values(), strict=True)),
                      present,
                      dict(zip(in_forms_of(final.effects, without), without.values(), strict=True)),
-                     ends, bench.left_out(final), noises, noise_gaps,
+                     ends, bench.left_out(fitted), noises, noise_gaps,
                      remaining(final.gap, noise, rules),
                      unexplained(final.gap, gaps.gap(ends), noise, bool(material), rules))
 

@@ -53,7 +53,8 @@ LOST = 4.0          # times the scatter that a fit may cost more than a subset d
 
 
 def select(flights: list[Flight], vehicle: Vehicle, causes: tuple[Candidate, ...],
-           rules: Rules, on_progress: Callable[[float], None] = lambda share: None) -> Selection:
+           rules: Rules, on_progress: Callable[[float], None] = lambda share: None,
+           gusty: bool = False) -> Selection:
     """
     Return the Selection among candidate effects for flights of a vehicle.
 
@@ -62,11 +63,11 @@ def select(flights: list[Flight], vehicle: Vehicle, causes: tuple[Candidate, ...
     the two agree. A moment that the best set has by flight although all flights have it alike is
     the vehicle's: the search is repeated with moments that only differ.
     """
-    search = _searched(_Search(flights, vehicle, causes, rules),
+    search = _searched(_Search(flights, vehicle, causes, rules, gusty=gusty),
                        lambda share: on_progress(ONCE * share))
     alike = search.alike_in_nuisances()
     if alike:
-        search = _searched(_Search(flights, vehicle, causes, rules, alike),
+        search = _searched(_Search(flights, vehicle, causes, rules, alike, gusty),
                            lambda share: on_progress(ONCE + (1.0 - ONCE) * share))
     on_progress(1.0)
     return search.selection()
@@ -107,10 +108,10 @@ class _Search:
     grids: tuple
 
     def __init__(self, flights: list[Flight], vehicle: Vehicle, causes: tuple[Candidate, ...],
-                 rules: Rules, differ: Collection[str] = ()) -> None:
+                 rules: Rules, differ: Collection[str] = (), gusty: bool = False) -> None:
         self.flights, self.vehicle, self.rules = flights, vehicle, rules
         self.all_causes = causes
-        self.nuisances = nuisance_candidates(vehicle, flights, differ)
+        self.nuisances = nuisance_candidates(vehicle, flights, differ, gusty)
         starts = [flight.states[flight.first] for flight in flights]
         self.noise = [quick_noise(errors_along(flight, vehicle, nominal(vehicle), start))
                       for flight, start in zip(flights, starts, strict=True)]

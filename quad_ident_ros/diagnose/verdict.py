@@ -91,7 +91,7 @@ def _replaces(bench: Bench, judged: Judgement, cause: Candidate, rival: Candidat
     """
     if is_brief(bench, judged.model, cause) and EFFECTS[rival.effect].actuator:
         return False
-    instead = bench.instead(judged.model, cause, rival, having.estimate.z)
+    instead = bench.without_gusts(bench.instead(judged.fitted, cause, rival, having.estimate.z))
     return not matters(judged.model.gap, instead.gap, gaps.gap(judged.before),
                        pooled(judged.noise), bench.rules, form_error=form_error_beside(
                            judged.model.effects, (cause,), bench.rules))

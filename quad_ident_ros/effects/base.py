@@ -74,6 +74,7 @@ class Form:
     parameters: of Parameter; source: where the formula stands. What it changes, each a function
     or None (rows of the tables: model.situation; p (P, LANES) has its parameters from row k on):
     body(p, k, s): mass, inertia, centre of mass, before the flight; air(p, k, s): the wind;
+    gust(p, k, s, rotors): the wind at a time of the flight;
     thrust(p, k, s, rotors): factors on the rotors' thrust and reaction torque;
     wrench(p, k, s, rotors): forces of the rotors, forces and moments on the body. actuator:
     'delay' or 'lag', where its parameters are those of the actuators; sensor: 'attitude' or 'rate'
@@ -92,6 +93,7 @@ class Form:
     acts_on: Literal['translation', 'rotation', 'both'] = 'both'
     body: Hook | None = field(default=None, repr=False)
     air: Hook | None = field(default=None, repr=False)
+    gust: Hook | None = field(default=None, repr=False)
     thrust: Hook | None = field(default=None, repr=False)
     wrench: Hook | None = field(default=None, repr=False)
     actuator: Literal['delay', 'lag'] | None = None

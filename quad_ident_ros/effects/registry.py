@@ -25,6 +25,7 @@ from quad_ident_ros.effects import (
     com_offset,
     external_wrench,
     ground_effect,
+    gusts,
     gyro_bias,
     inertia_mismatch,
     inflow,
@@ -52,10 +53,13 @@ EFFECTS: dict[str, Effect] = {module.EFFECT.name: module.EFFECT for module in (
     blade_flapping, attitude_misalignment, gyro_bias)}
 # Not a cause but a measure: force and moment that no effect explains, whatever they come from.
 RESIDUAL_WRENCH = external_wrench.EFFECT
+# Nor is this one: air that moves as no vehicle makes it, differently in each flight.
+GUSTS = gusts.EFFECT
+MEASURES = (RESIDUAL_WRENCH, GUSTS)
 
 # The usual form of each effect first, so that the vector begins with what most know of it.
 FORMS: tuple[tuple[str, Form], ...] = (
-    *((effect.name, effect.forms[0]) for effect in (*EFFECTS.values(), RESIDUAL_WRENCH)),
+    *((effect.name, effect.forms[0]) for effect in (*EFFECTS.values(), *MEASURES)),
     *((effect.name, form) for effect in EFFECTS.values() for form in effect.forms[1:]))
 PARAMETERS: tuple[tuple[str, Parameter], ...] = tuple(
     (name, parameter) for name, form in FORMS for parameter in form.parameters)
@@ -66,7 +70,7 @@ for _name, _form in FORMS:
     _first = max((part.stop for part in PLACES.values()), default=0)
     PLACES[_name, _form.name] = slice(_first, _first + len(_form.parameters))
 SLICES: dict[str, slice] = {effect.name: PLACES[effect.name, effect.forms[0].name]
-                            for effect in (*EFFECTS.values(), RESIDUAL_WRENCH)}
+                            for effect in (*EFFECTS.values(), *MEASURES)}
 """Where those of an effect's usual form stand."""
 PLACE: dict[tuple[str, str], int] = {(name, parameter.name): place for place, (name, parameter)
                                      in enumerate(PARAMETERS)}
@@ -169,7 +173,7 @@ def _chain(hook: str) -> Hook:
     """Return one compiled function that does what all forms do at a hook, one after another."""
     early = hook in BEFORE
     links: list[Link] = []
-    for effect in (*EFFECTS.values(), RESIDUAL_WRENCH):
+    for effect in (*EFFECTS.values(), *MEASURES):
         for form in effect.forms:
             key = effect.name, form.name
             function = getattr(form, hook)
@@ -245,4 +249,5 @@ def _both(first: Hook, second: Hook) -> Hook:
 
 
 BEFORE = ('body', 'air')    # hooks that act before the flight, and know nothing of the rotors
-BODY, AIR, THRUST, WRENCH = (_chain(hook) for hook in ('body', 'air', 'thrust', 'wrench'))
+BODY, AIR, GUST, THRUST, WRENCH = (
+    _chain(hook) for hook in ('body', 'air', 'gust', 'thrust', 'wrench'))

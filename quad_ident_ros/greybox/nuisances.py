@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.stats import f as fisher
 
-from quad_ident_ros.effects.registry import EFFECTS
+from quad_ident_ros.effects.registry import EFFECTS, GUSTS
 from quad_ident_ros.greybox.flights import inertial, Track
 from quad_ident_ros.greybox.parameters import INDEX
 from quad_ident_ros.model.vehicle import Vehicle
@@ -26,6 +26,7 @@ TRIM = 'trim_moment'
 LEVEL = 'thrust_level'
 LEVEL_TITLE = 'thrust relative to the level at which commands were scaled to carry the weight'
 HEADING = 0.02      # rad, how far compasses usually differ from one flight to the next
+GUST = 1.0          # m/s, of light turbulence (MIL-F-8785C: a tenth of the wind at 20 feet)
 OFF_LEVEL = 0.1     # how far that usually is off: drag, wind, a battery that empties
 RARE, LIKELY = 1e-4, 0.5    # odds of flights having one, before looking
 APART = 0.02        # s, how far clocks usually are apart where nothing shows it,
@@ -71,9 +72,10 @@ def put_right(tracks: Sequence[Track]) -> bool:
     return len(clocks) == len(tracks) and any(clock.late for clock in clocks)
 
 
-def nuisances(vehicle: Vehicle, tracks: Sequence[Track]) -> tuple[Nuisance, ...]:
+def nuisances(vehicle: Vehicle, tracks: Sequence[Track], gusty: bool = False
+              ) -> tuple[Nuisance, ...]:
     """
-    Return the Nuisances of Tracks of a vehicle.
+    Return the Nuisances of Tracks of a vehicle; gusty: the wind may change along a flight, too.
 
     Those with one name exclude one another: how far flights usually differ depends on who flies.
     Records whose clocks were put right are likely to have a rest of their offset.
@@ -118,6 +120,9 @@ def nuisances(vehicle: Vehicle, tracks: Sequence[Track]) -> tuple[Nuisance, ...]
             kinds.append((f'{name}_by_flight', f'{effect.title}, by flight', differing[0][0].unit,
                           tuple(f'{name}.{parameter.name}' for parameter, _ in differing),
                           tuple(spread for _, spread in differing), RARE, name, name))
+    if gusty:
+        names = tuple(f'{GUSTS.name}.{one.name}' for one in GUSTS.parameters)
+        kinds.append((GUSTS.name, GUSTS.title, 'm/s', names, (GUST,) * len(names), RARE, 'wind'))
     return tuple(Nuisance(name, title, unit, tuple(INDEX[one] for one in columns), *rest)
                  for name, title, unit, columns, *rest in kinds)
 

@@ -39,7 +39,8 @@ class Course:
     t (N,) s from its start; commands (M, n) rad/s, the rotors', each held to the next; volt_drop
     (N,) V below reference_voltage, V; stamps (M,) s of the commands, t where none are given;
     across (N, 2) m/s^2: the specific force along body x and y from each sample to the next, which
-    the rotors do not make and which is taken from the record, or None where the model gives it.
+    the rotors do not make and which is taken from the record, or None where the model gives it;
+    span: the first and the last t of the whole flight, which say how far along it a sample is.
     """
 
     t: np.ndarray
@@ -48,10 +49,13 @@ class Course:
     stamps: np.ndarray = None  # type: ignore[assignment]  # t, see below
     reference_voltage: float = np.inf
     across: np.ndarray | None = None
+    span: tuple[float, float] = None  # type: ignore[assignment]  # that of t, see below
 
     def __post_init__(self) -> None:
         if self.stamps is None:
             object.__setattr__(self, 'stamps', self.t)
+        if self.span is None:
+            object.__setattr__(self, 'span', (float(self.t[0]), float(self.t[-1])))
 
     @property
     def volt_share(self) -> np.ndarray:
@@ -67,6 +71,8 @@ class Course:
         rows = np.arange(steps * (len(self.t) - 1) + 1) // steps
         found = np.zeros((len(rows), INPUT))
         found[:, 5], found[:, 6] = self.volt_drop[rows], self.volt_share[rows]
+        begin, end = self.span
+        found[:, 9] = (self.t[rows] - begin) / max(end - begin, 1e-9)
         if self.across is not None:
             found[:, 7:9] = self.across[rows]
         if vehicle.residual is None:

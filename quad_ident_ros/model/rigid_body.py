@@ -13,9 +13,20 @@ has a residual function, its table follows.
 import numpy as np
 
 from quad_ident_ros.compiled import compiled
-from quad_ident_ros.effects.registry import AIR, BODY, mark, TABLE, THRUST, WRENCH
+from quad_ident_ros.effects.registry import (
+    AIR,
+    BODY,
+    GUST,
+    GUSTS,
+    mark,
+    ROWS_OF,
+    TABLE,
+    THRUST,
+    WRENCH,
+)
 from quad_ident_ros.model import residual_in_flight
 from quad_ident_ros.model.situation import (
+    ALONG,
     ARMS_X,
     ARMS_Y,
     AX,
@@ -78,6 +89,7 @@ from quad_ident_ros.model.situation import (
     SPIN_UP,
     SPINS,
     STAGE,
+    STEADY_X,
     TIME,
     TORQUE,
     TX,
@@ -102,8 +114,10 @@ from quad_ident_ros.model.vehicle import Vehicle
 
 STATE = 13      # position, velocity (world), quaternion (body to world), rate (body)
 # Besides the rotors: force z, moment x, y, z (body), spin sum, fall of the voltage, V and share,
-# specific force x, y (body); for a residual function, smoothed commands after these.
-INPUT = 9
+# specific force x, y (body), how far along the flight it is, 0 to 1; for a residual function,
+# smoothed commands after these.
+INPUT = 10
+GUSTY = ROWS_OF[GUSTS.name, GUSTS.forms[0].name]
 CONSTANTS = 19
 ROUNDING = 2.0 ** -52   # of a moment of inertia: smaller products count as 0
 
@@ -145,6 +159,8 @@ def prepare(v: np.ndarray, places: np.ndarray, theta: np.ndarray, s: np.ndarray,
     BODY(theta, s)
     AIR(theta, s)
     for i in range(s.shape[1]):
+        for k in range(3):
+            s[STEADY_X + k, i] = s[WIND_X + k, i]
         s[PER_MASS, i] = 1.0 / s[MASS, i]
         s[PER_IX, i], s[PER_IY, i], s[PER_IZ, i] = 1.0 / s[IX, i], 1.0 / s[IY, i], 1.0 / s[IZ, i]
     full = 0.0
@@ -285,6 +301,12 @@ def derivative(x: np.ndarray, u: np.ndarray, v: np.ndarray, places: np.ndarray,
     Newton-Euler with a quaternion and the body rate, so that there is no singular attitude.
     u (INPUT, LANES) what acts besides the rotors, with smoothed commands for a residual function.
     """
+    if s[GUSTY, 0] != 0.0:
+        for i in range(s.shape[1]):
+            s[ALONG, i] = u[9, i]
+            for k in range(3):
+                s[WIND_X + k, i] = s[STEADY_X + k, i]
+        GUST(theta, s, rotors)
     _place(x, s)
     for i in range(s.shape[1]):
         s[FX, i] = s[FY, i] = s[FZ, i] = 0.0

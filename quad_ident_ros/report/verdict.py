@@ -4,6 +4,8 @@
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from quad_ident_ros.diagnose.result import (
     Diagnosis,
     Gap,
@@ -13,7 +15,7 @@ from quad_ident_ros.diagnose.result import (
     Value,
 )
 from quad_ident_ros.diagnose.rules import RULES
-from quad_ident_ros.effects.registry import titled
+from quad_ident_ros.effects.registry import GUSTS, titled
 from quad_ident_ros.greybox.nuisances import CLOCK
 
 NOTHING_TO_CLOSE = 'the velocity gap is not above the noise, so there is nothing to close'
@@ -32,14 +34,14 @@ def verdict_line(found: Diagnosis) -> str:
         return f'undetermined: {doubts}{_others(found)}'
     named = _named(found)
     if not named:
-        return 'unknown: no known effect explains the gap'
+        return f'unknown: no known effect explains the gap{_gusts_of(found)}'
     unknown = 'unknown' in found.verdict
     share = (f'{100 * max(found.gap.closed, 0.0):.0f} % of the velocity gap above the noise'
              if above_noise(found.gap) else 'part of the gap' if unknown else 'the gap')
     if unknown:
         share += (', and the rest is unknown: another cause, or '
                   f'{"this effect" if len(named) == 1 else "one of these effects"} by a law that '
-                  'is none of its forms')
+                  f'is none of its forms{_gusts_of(found)}')
     beside = doubts and f'; beside {"it" if len(named) == 1 else "them"}, {doubts}'
     if is_uncertain(found):
         best = '; '.join(f'{titled(row.effect)}{_law_of(found, row)}, {values_of(row)}, '
@@ -53,6 +55,16 @@ def verdict_line(found: Diagnosis) -> str:
     return f'{len(named)} effects explain {share}: ' + '; '.join(
         f'{titled(row.effect)}{_law_of(found, row)}, {values_of(row)}, contribution '
         f'{contribution_of(row)}' for row in named) + beside
+
+
+def _gusts_of(found: Diagnosis) -> str:
+    """Return in words that a force that is unknown may be gusts, where flights have some."""
+    one = (found.nuisances or {}).get(GUSTS.name)
+    if one is None or not any(row.channel[0] == 'F' for row in found.unknown):
+        return ''
+    values = np.array([*one['values'], one['held_out']])
+    return (f'; a wind that changes by {np.sqrt(np.mean(values ** 2)):.2g} m/s along each flight '
+            'would fit, but no simulation predicts it')
 
 
 def _others(found: Diagnosis) -> str:
@@ -168,7 +180,8 @@ def _needed(found: Diagnosis) -> tuple[str, ...]:
     gap = found.gap
     off = any(gap.before[name] ** 2 - gap.before_own[name] ** 2 > tolerance ** 2
               for name, tolerance in found.tolerance.items())
-    return tuple(found.nuisances or ()) if off else ()
+    # Gusts are in neither gap: nothing is nearer by them.
+    return tuple(name for name in found.nuisances or () if name != GUSTS.name) if off else ()
 
 
 def _mend_flights(found: Diagnosis) -> str:

@@ -10,13 +10,16 @@ from hypothesis import strategies as st
 import numpy as np
 import pytest
 
-from quad_ident_ros.effects.registry import EFFECTS
+from quad_ident_ros.effects.gusts import KNOTS
+from quad_ident_ros.effects.registry import EFFECTS, SLICES, vector
 from quad_ident_ros.model.attitude import rotation_matrix
+from quad_ident_ros.model.dynamics import predict
 
 FAST = settings(deadline=None, max_examples=60)
 MASS, GRAVITY = BARE.mass, BARE.gravity
 WEIGHT = MASS * GRAVITY
 HOVER = hover_speed(BARE)
+DRAGS = {'rotor_drag': {'coefficient': 0.3}, 'body_drag': {'horizontal': 0.05}}
 
 
 @pytest.mark.parametrize(('linear', 'quadratic'), [(0.3, 0.05), (0.3, 0.0), (0.0, 0.05)])
@@ -79,6 +82,57 @@ def test_a_steady_wind_is_a_moving_world(wind, seed):
     still[:, :3] += course.t[:, None] * wind
     still[:, 3:6] += wind
     assert np.abs(found - still).max() < 1e-10
+
+
+def in_gusts(vehicle, effects, gusts, course, start):
+    """Return the states of a flight with effects in wind along x of values at its knots."""
+    theta = vector(effects, vehicle)
+    theta[SLICES['gusts']][:len(gusts)] = gusts
+    return predict(vehicle, theta, course, start[None], [0], len(course.t) - 1)[0]
+
+
+def test_wind_that_rises_along_a_flight_is_followed_late():
+    # m u' = c (w - u) of the velocity u over ground, w = rise t.
+    drag, rise, seconds = 0.3, 2.0, 4.0
+    late = MASS / drag
+    flat = replace(BARE, rotors=tuple(replace(rotor, position=(*rotor.position[:2], 0.0))
+                                      for rotor in BARE.rotors))
+    course = held(flat, HOVER, seconds=seconds)
+    found = in_gusts(flat, {'rotor_drag': {'coefficient': drag}},
+                     rise * seconds * np.linspace(0.0, 1.0, KNOTS), course, state())[:, 3]
+    t = course.t
+    # The wind counts at the begin of each step of the integration.
+    assert np.abs(found - rise * (t - late * (1.0 - np.exp(-t / late)))).max() < rise * 0.011
+
+
+def test_gusts_that_stay_the_same_are_a_steady_wind():
+    course, start = steps(VEHICLE), state(velocity=(2, 1, 0), euler=(0.1, 0.2, 0.5))
+    steady = roll(VEHICLE, {**DRAGS, 'wind': {'x': 3.0}}, course, start)
+    found = in_gusts(VEHICLE, {**DRAGS, 'wind': {'x': 1.0}}, np.full(KNOTS, 2.0), course, start)
+    assert np.abs(found - steady).max() < 1e-9
+
+
+def test_gusts_blow_along_a_part_of_a_recording_as_along_a_whole_one():
+    # A part, such as a flight after minutes on the ground, has the time of the recording.
+    course, start = steps(VEHICLE), state(velocity=(2, 1, 0))
+    gusts = np.linspace(-5.0, 5.0, KNOTS)
+    late = replace(course, t=course.t + 300.0, stamps=course.stamps + 300.0, span=None)
+    found = [in_gusts(VEHICLE, DRAGS, gusts, one, start) for one in (course, late)]
+    assert np.abs(found[1] - found[0]).max() < 1e-9
+
+
+def test_a_rollout_has_the_gusts_of_its_part_of_the_flight():
+    course, start = steps(VEHICLE, seconds=4.0), state(velocity=(2, 1, 0))
+    theta = vector(DRAGS, VEHICLE)
+    theta[SLICES['gusts']][:KNOTS] = np.linspace(-5.0, 5.0, KNOTS)
+    whole = predict(VEHICLE, theta, course, start[None], [0], len(course.t) - 1)[0]
+    short = predict(VEHICLE, theta, course, whole[300][None], [300], 20)[0]
+    assert np.abs(short - whole[300:321]).max() < 1e-9
+
+
+def test_gusts_do_nothing_where_nothing_is_felt_of_the_air():
+    course, gusts = steps(BARE), np.linspace(-5.0, 5.0, KNOTS)
+    assert (in_gusts(BARE, {}, gusts, course, state()) == roll(BARE, {}, course, state())).all()
 
 
 def test_drag_of_a_rotor_acts_where_the_rotor_is():

@@ -458,6 +458,12 @@ def test_thrust_and_wind_by_flight_are_asked_of_several_flights_alone(dragged):
     assert names[1] - names[0] == {'thrust_scale_by_flight', 'wind_by_flight'}
 
 
+def test_gusts_are_asked_of_flights_only_where_they_are_looked_for(dragged):
+    tracks = [track_of(record, VEHICLE) for record in dragged]
+    names = [{kind.name for kind in nuisances(VEHICLE, tracks, gusty)} for gusty in (False, True)]
+    assert names[1] - names[0] == {'gusts'}
+
+
 def test_a_battery_that_was_fuller_in_one_flight_is_no_effect():
     truths = [{**DRAG, 'thrust_scale': {'factor': factor}} for factor in (1.02, 0.98, 1.0)]
     flights = [fly_closed_loop(VEHICLE, truth, 'lissajous', duration=12.0, seed=seed,

@@ -1,16 +1,19 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What is said of an effect whose law is none of its forms."""
+"""What is said of an effect whose law is none of its forms, and of gusts."""
 
 from dataclasses import replace
 
 from published import diagnosis
 import pytest
 
+from quad_ident_ros.diagnose.result import Unexplained
 from quad_ident_ros.report.verdict import next_step, verdict_line
 
 FOUND = diagnosis(form_unknown=('rotor_drag',))
 ROW = replace(FOUND.ranking[0], explained=0.413)
+GUSTS = {'gusts': {'what': 'wind that changes along a flight', 'unit': 'm/s',
+                   'values': [[1.2] * 16], 'held_out': [-1.2] * 16}}
 
 
 @pytest.mark.parametrize('shown', [(), ('force',)])
@@ -26,3 +29,20 @@ def test_an_effect_of_unknown_form_is_said_to_be_one_however_probable_it_is(prob
     assert ('uncertain' in verdict_line(found)) == (probability < 0.5)
     assert ('drag of the rotors (rotor_drag), form unknown: 41 % of it explained by by_speed, '
             'coefficient 0.2') in verdict_line(found)
+
+
+@pytest.mark.parametrize(('channel', 'unit'), [('Fx', 'N'), ('My', 'N m')])
+def test_gusts_are_said_to_fit_only_what_is_a_force(channel, unit):
+    remains = Unexplained(channel, 'everywhere', 1.0, (0.1, 0.2), 0.3, unit)
+    found = diagnosis(verdict=('rotor_drag', 'unknown'), unknown=(remains,), nuisances=GUSTS)
+    assert ('a wind that changes by 1.2 m/s along each flight' in verdict_line(found)
+            ) == (unit == 'N')
+
+
+def test_no_one_is_asked_to_mend_gusts():
+    off = replace(FOUND.gap, before=dict.fromkeys(FOUND.gap.before, 0.2))
+    bias = {'what': 'bias of the rate', 'unit': 'rad/s', 'values': [[0.1]], 'held_out': [0.1]}
+    found = diagnosis(verdict=('none',), gap=off, nuisances={**GUSTS, 'rate_bias': bias},
+                      tolerance=dict.fromkeys(off.before, 0.02))
+    assert 'mend rate_bias of the flights' in next_step(found)
+    assert 'gusts' not in verdict_line(found)

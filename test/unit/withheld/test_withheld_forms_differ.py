@@ -194,9 +194,9 @@ def test_a_tilt_is_not_that_of_an_attitude_or_of_a_block(form):
     part, turns = made('attitude_misalignment', form), []
     thrusts, rates = np.mean((FLIGHT['speeds'] / HOVER) ** 2, axis=1), FLIGHT['rate']
     seen = np.array([
-        part.measured(t, np.array([*place, *np.zeros(3), *attitude, *rate]), thrust)
-        for t, place, attitude, thrust, rate in zip(
-            FLIGHT['time'], WAY, LEANS.as_quat(), thrusts, rates, strict=True)])
+        part.measured(t, np.array([*place, *velocity, *attitude, *rate]), thrust)
+        for t, place, velocity, attitude, thrust, rate in zip(
+            FLIGHT['time'], WAY, FLIGHT['air'], LEANS.as_quat(), thrusts, rates, strict=True)])
     turns = (LEANS.inv() * Rotation.from_quat(seen[:, 6:10])).as_rotvec()
     mean = np.mean(turns, axis=0)
     # The rates of a block that is tilted so, or of one that is not: whichever is nearer.

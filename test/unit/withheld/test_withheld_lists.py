@@ -221,3 +221,13 @@ def test_a_jet_pushes_back_where_the_body_carries_it_and_not_always():
     # Its valve opens and closes within a moment.
     assert np.abs(np.diff(sizes)).max() <= 1.01 * recoil.push * 0.01 / recoil.OPENS
     assert moments == pytest.approx(np.cross(recoil.place, forces))
+
+
+def test_a_keel_turns_a_vehicle_upright_and_pushes_it_nowhere():
+    keel = outside.Keel(1.0, 5.0, 0.1, np.random.default_rng(1))
+    for axis in (0, 1):
+        leans = Rotation.from_rotvec(0.3 * np.eye(3)[axis])
+        turned = Rotation.from_euler('z', 0.7) * leans
+        force, moment = keel.wrench(SimpleNamespace(rotation=turned.as_matrix()))
+        assert moment == pytest.approx(-keel.moment * np.sin(0.3) * np.eye(3)[axis])
+        assert not np.any(force)
