@@ -196,9 +196,9 @@ def _by_tilt(draft: Draft, names: Sequence[str]) -> str:
 def bends(draft: Draft, place: np.ndarray, attitude: np.ndarray
           ) -> tuple[np.ndarray, np.ndarray] | None:
     """
-    Return how a position (N, 3) bends (n, 2), and how a thrust along attitudes (N, 4) bends it.
+    Return second differences (n, 2) of a position (N, 3), and those that a thrust gives it.
 
-    None where the record is too short.
+    The thrust is along attitudes (N, 4). None where the record is too short.
     """
     w, x, y, z = attitude.T
     up = 1 - 2 * (x ** 2 + y ** 2)

@@ -12,8 +12,8 @@ from quad_ident_ros.data.unit_names import unit_by
 UNIT = re.compile(r'[\[(]\s*([^\])]*)\s*[\])]\s*$')
 _ENTRY = re.compile(r'\d+|[wxyzWXYZ]')
 ENDING = re.compile(r'_((?:m?rad|deg)_?(?:ps|s|sec)|[mc]?m(?:_?s_?2|ps2?|_s)|ns|us|usec|ms|msec|s|'
-                    r'sec|secs|seconds|mm|cm|m|ft|deg|rad|mrad|dps|rpm|krpm|hz|g|mv|v|(?<=time_)min|'
-                    r'minutes|(?<=time_)h|hours)$')
+                    r'sec|secs|seconds|mm|cm|m|ft|deg|rad|mrad|dps|rpm|krpm|hz|g|mv|v|'
+                    r'(?<=time_)min|minutes|(?<=time_)h|hours)$')
 NO_UNITS = frozenset(('', '-', '1', 'world', 'body', 'global', 'local', 'inertial', 'ned', 'enu',
                       'frd', 'flu', 'nwu', 'raw', 'filtered', 'estimated', 'measured', 'float',
                       'float32', 'float64', 'double', 'utc', 'unix', 'epoch', 'gps'))
@@ -86,8 +86,8 @@ TIME = re.compile(r'(^|_)(t|time|timestamp|time_?stamp|stamp|ts|zeit|elapsed|clo
                   r'rosbagtimestamp|time_boot|time_since_boot|millis|micros)$')
 _WORDS = 'pwm|cmd|command|req|out|output|duty|throttle|value'
 MOTOR = re.compile(r'(^|_)(cmd|command|motor_cmd|m|mot|mot_m|motor|motors|motor_m|pwm|dshot|esc|u|'
-                   r'output|outputs|controls?|actuator|actuator_controls|action|throttle|thrust|duty|rc_?out|rcou_c|'
-                   r'servo)'
+                   r'output|outputs|controls?|actuator|actuator_controls|action|throttle|thrust|'
+                   r'duty|rc_?out|rcou_c|servo)'
                    rf'(?:_(?:data|control|velocities|angular_velocities|{_WORDS}))?_?(\d{{1,2}})$')
 _ASKED = r'(^|_)(cmds?|commands?|commanded|req)(_|$)'
 COMMANDED = re.compile(_ASKED)
