@@ -29,6 +29,7 @@ from quad_ident_ros.model.vehicle import Vehicle
 
 STATES = ('px', 'py', 'pz', 'vx', 'vy', 'vz', 'qw', 'qx', 'qy', 'qz', 'wx', 'wy', 'wz')
 LONGEST_STEP = 0.01     # s, of the integration: errors of about 1e-6 of what happens in it
+BREAK = 3.0             # s between two samples that are of different parts of a flight
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,7 +41,7 @@ class Course:
     (N,) V below reference_voltage, V; stamps (M,) s of the commands, t where none are given;
     across (N, 2) m/s^2: the specific force along body x and y from each sample to the next, which
     the rotors do not make and which is taken from the record, or None where the model gives it;
-    span: the first and the last t of the whole flight, which say how far along it a sample is.
+    along (N,): how far along the flight each sample is, 0 to 1, by the time flown, see along_of.
     """
 
     t: np.ndarray
@@ -49,13 +50,13 @@ class Course:
     stamps: np.ndarray = None  # type: ignore[assignment]  # t, see below
     reference_voltage: float = np.inf
     across: np.ndarray | None = None
-    span: tuple[float, float] = None  # type: ignore[assignment]  # that of t, see below
+    along: np.ndarray = None  # type: ignore[assignment]  # that of t, see below
 
     def __post_init__(self) -> None:
         if self.stamps is None:
             object.__setattr__(self, 'stamps', self.t)
-        if self.span is None:
-            object.__setattr__(self, 'span', (float(self.t[0]), float(self.t[-1])))
+        if self.along is None:
+            object.__setattr__(self, 'along', along_of(self.t))
 
     @property
     def volt_share(self) -> np.ndarray:
@@ -71,8 +72,7 @@ class Course:
         rows = np.arange(steps * (len(self.t) - 1) + 1) // steps
         found = np.zeros((len(rows), INPUT))
         found[:, 5], found[:, 6] = self.volt_drop[rows], self.volt_share[rows]
-        begin, end = self.span
-        found[:, 9] = (self.t[rows] - begin) / max(end - begin, 1e-9)
+        found[:, 9] = self.along[rows]
         if self.across is not None:
             found[:, 7:9] = self.across[rows]
         if vehicle.residual is None:
@@ -80,6 +80,14 @@ class Course:
         before = smoothed(finer(self.t, steps), self.stamps, self.commands, rotor_table(vehicle),
                           vehicle.thrust_coefficient, vehicle.torque_coefficient)
         return np.concatenate([found, before], axis=1)
+
+
+def along_of(t: np.ndarray) -> np.ndarray:
+    """Return how far along a flight its times (N,) are, 0 to 1; breaks in it count for nothing."""
+    steps = np.diff(t)
+    lost = np.cumsum(np.where(steps > BREAK, steps, 0.0))
+    flown = t - t[0] - np.append(0.0, lost)
+    return flown / max(float(flown[-1]), 1e-9)
 
 
 IN_A_MAPPING = ('in a mapping (--mapping), which begins with: quad_ident info FILE '
@@ -167,6 +175,7 @@ def predict(vehicle: Vehicle, thetas: ArrayLike, course: Course, starts: np.ndar
     if len(rows) < len(course.t):
         first, guide = np.searchsorted(rows, first), None if guide is None else guide[rows]
         course = replace(course, t=course.t[rows], volt_drop=course.volt_drop[rows],
+                         along=course.along[rows],
                          across=None if course.across is None else course.across[rows])
     thetas = np.atleast_2d(np.asarray(thetas, float))
     which = np.zeros(len(starts), np.int64) if which is None else np.asarray(which, np.int64)

@@ -41,20 +41,21 @@ def verdict_line(found: Diagnosis) -> str:
     if unknown:
         share += (', and the rest is unknown: another cause, or '
                   f'{"this effect" if len(named) == 1 else "one of these effects"} by a law that '
-                  f'is none of its forms{_gusts_of(found)}')
+                  'is none of its forms')
     beside = doubts and f'; beside {"it" if len(named) == 1 else "them"}, {doubts}'
+    gusts = _gusts_of(found) if unknown else ''
     if is_uncertain(found):
         best = '; '.join(f'{titled(row.effect)}{_law_of(found, row)}, {values_of(row)}, '
                          f'probability {row.probability:.2g}' for row in named)
         return (f'uncertain: the best known explanation of {share} is less likely than '
-                f'something else that acts alike: {best}')
+                f'something else that acts alike: {best}{gusts}')
     if len(named) == 1:
         row, = named
         return (f'{titled(row.effect)}{_law_of(found, row)}, {values_of(row)}, explains {share}'
-                f'{beside}')
+                f'{beside}{gusts}')
     return f'{len(named)} effects explain {share}: ' + '; '.join(
         f'{titled(row.effect)}{_law_of(found, row)}, {values_of(row)}, contribution '
-        f'{contribution_of(row)}' for row in named) + beside
+        f'{contribution_of(row)}' for row in named) + beside + gusts
 
 
 def _gusts_of(found: Diagnosis) -> str:
@@ -64,7 +65,7 @@ def _gusts_of(found: Diagnosis) -> str:
         return ''
     values = np.array([*one['values'], one['held_out']])
     return (f'; a wind that changes by {np.sqrt(np.mean(values ** 2)):.2g} m/s along each flight '
-            'would fit, but no simulation predicts it')
+            'would fit what is unknown, but no simulation predicts it')
 
 
 def _others(found: Diagnosis) -> str:

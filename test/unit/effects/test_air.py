@@ -13,7 +13,7 @@ import pytest
 from quad_ident_ros.effects.gusts import KNOTS
 from quad_ident_ros.effects.registry import EFFECTS, SLICES, vector
 from quad_ident_ros.model.attitude import rotation_matrix
-from quad_ident_ros.model.dynamics import predict
+from quad_ident_ros.model.dynamics import along_of, predict
 
 FAST = settings(deadline=None, max_examples=60)
 MASS, GRAVITY = BARE.mass, BARE.gravity
@@ -116,9 +116,15 @@ def test_gusts_blow_along_a_part_of_a_recording_as_along_a_whole_one():
     # A part, such as a flight after minutes on the ground, has the time of the recording.
     course, start = steps(VEHICLE), state(velocity=(2, 1, 0))
     gusts = np.linspace(-5.0, 5.0, KNOTS)
-    late = replace(course, t=course.t + 300.0, stamps=course.stamps + 300.0, span=None)
+    late = replace(course, t=course.t + 300.0, stamps=course.stamps + 300.0, along=None)
     found = [in_gusts(VEHICLE, DRAGS, gusts, one, start) for one in (course, late)]
     assert np.abs(found[1] - found[0]).max() < 1e-9
+
+
+def test_a_break_between_parts_of_a_flight_has_no_gusts_of_its_own():
+    t = np.arange(0.0, 10.0, 0.01)
+    whole, split = along_of(t), along_of(np.where(t < 4.0, t, t + 300.0))
+    assert np.abs(split - whole).max() < 2e-3 and (split[0], split[-1]) == (0.0, 1.0)
 
 
 def test_a_rollout_has_the_gusts_of_its_part_of_the_flight():

@@ -35,8 +35,18 @@ def test_an_effect_of_unknown_form_is_said_to_be_one_however_probable_it_is(prob
 def test_gusts_are_said_to_fit_only_what_is_a_force(channel, unit):
     remains = Unexplained(channel, 'everywhere', 1.0, (0.1, 0.2), 0.3, unit)
     found = diagnosis(verdict=('rotor_drag', 'unknown'), unknown=(remains,), nuisances=GUSTS)
-    assert ('a wind that changes by 1.2 m/s along each flight' in verdict_line(found)
-            ) == (unit == 'N')
+    said = '; a wind that changes by 1.2 m/s along each flight would fit what is unknown'
+    assert (said in verdict_line(found)) == (unit == 'N')
+
+
+def test_gusts_are_said_last_of_effects_that_are_more_than_one_or_uncertain():
+    remains = Unexplained('Fx', 'everywhere', 1.0, (0.1, 0.2), 0.3, 'N')
+    unsure, wind = replace(ROW, probability=0.3), replace(ROW, effect='wind', parameters={})
+    for verdict, ranking in ((('rotor_drag', 'unknown'), (unsure,)),
+                             (('rotor_drag', 'wind', 'unknown'), (ROW, wind))):
+        line = verdict_line(diagnosis(verdict=verdict, ranking=ranking, unknown=(remains,),
+                                      nuisances=GUSTS))
+        assert line.endswith('would fit what is unknown, but no simulation predicts it')
 
 
 def test_no_one_is_asked_to_mend_gusts():
