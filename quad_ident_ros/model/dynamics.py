@@ -86,8 +86,8 @@ def along_of(t: np.ndarray) -> np.ndarray:
     """Return how far along a flight its times (N,) are, 0 to 1; breaks in it count for nothing."""
     steps = np.diff(t)
     lost = np.cumsum(np.where(steps > BREAK, steps, 0.0))
-    flown = t - t[0] - np.append(0.0, lost)
-    return flown / max(float(flown[-1]), 1e-9)
+    flown = t - t[:1] - np.append(0.0, lost)[:len(t)]
+    return flown / max(float(flown.max(initial=0.0)), 1e-9)
 
 
 IN_A_MAPPING = ('in a mapping (--mapping), which begins with: quad_ident info FILE '
