@@ -80,6 +80,8 @@ def read_yaml(path):
     """Return the mapping in a YAML file; raises InputError with file and line where it fails."""
     try:
         data = yaml.load(_text_of(path), _Loader)   # a SafeLoader
+    except FileNotFoundError:
+        raise InputError(f'{path}: there is no such file; check its path') from None
     except OSError as error:
         raise InputError(f'{path}: cannot be read: {error.strerror}') from None
     except UnicodeDecodeError:

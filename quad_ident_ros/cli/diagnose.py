@@ -20,6 +20,7 @@ from quad_ident_ros.cli.options import (
 from quad_ident_ros.closed_loop.controller import controller_of
 from quad_ident_ros.closed_loop.controller import INTERFACE as OF_CONTROLLERS
 from quad_ident_ros.data.split import joined
+from quad_ident_ros.data.told_apart import Apart
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.diagnose.priors import load_priors
 from quad_ident_ros.diagnose.provenance import Run, run_of
@@ -127,11 +128,13 @@ def run(options):
     effects = ([name.strip() for name in options.effects.split(',')]
                if options.effects is not None else None)
     # Read one after the other as they are taken in, and not kept beside what is made of them.
-    records = (record for path in options.flights
-               for record in flights_from(path, options.mapping, vehicle, selection,
-                                          by_log))
-    held = (joined(flights_from(options.hold_out, options.mapping, vehicle, selection, by_log))[-1]
-            if options.hold_out else None)
+    apart = Apart([*options.flights, *([options.hold_out] if options.hold_out else [])])
+
+    def read(path):
+        return apart.named(path, flights_from(path, options.mapping, vehicle, selection, by_log))
+
+    records = (record for path in options.flights for record in read(path))
+    held = joined(read(options.hold_out))[-1] if options.hold_out else None
     controller = controller_of(options.controller, vehicle) if options.controller else None
     with (Simulator(options.simulator, vehicle) if options.simulator else nullcontext()
           ) as simulator, progress_bar(options.detail == VERDICT) as bar:

@@ -73,7 +73,13 @@ def parser(wanted):
 
 
 class _Parser(argparse.ArgumentParser):
-    """Suggests, for a wrong value of several, which of them may be meant."""
+    """Suggests, for a wrong value of several, which of them may be meant, and names numbers."""
+
+    def __init__(self, *args, **more):
+        """Take numbers by functions that say what they expect."""
+        super().__init__(*args, **more)
+        self.register('type', int, _whole)
+        self.register('type', float, _number)
 
     def error(self, message):
         """End with a message in one line."""
@@ -82,6 +88,21 @@ class _Parser(argparse.ArgumentParser):
             hint = suggestion(wrong[1], re.findall(r"[^\s',]+", wrong[2]))
             message += f'; {hint}' if hint else ''
         super().error(message)
+
+
+def _whole(text):
+    """Return a whole number; argparse speaks of an "invalid int value"."""
+    try:
+        return int(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f'expected a whole number, got {text!r}') from None
+
+
+def _number(text):
+    try:
+        return float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f'expected a number, got {text!r}') from None
 
 
 def _refuse(command, unknown):

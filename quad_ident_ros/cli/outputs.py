@@ -15,6 +15,8 @@ OUTPUTS = ('out', 'output', 'out_vehicle', 'out_priors', 'json', 'report', 'pict
            'write_mapping')
 FILES = ('out_vehicle', 'out_priors', 'json', 'report', 'picture', 'write_mapping')
 """Names of the options, of any command, that name files read, written, and never folders."""
+FOLDERS = ('simulate', 'demo', 'paper')
+"""Commands whose output is a folder."""
 PAGES = ('.html', '.htm')
 
 
@@ -43,6 +45,10 @@ def check_outputs(options):
         given = Path(output)    # the link of a pipe names no place
         if not given.exists() or given.is_file() or given.is_dir():
             _try_to_write(output, place)
+    if getattr(options, 'command', None) in FOLDERS:
+        for output in _named(options, ('output',)):
+            if Path(output).is_file():
+                raise InputError(f'{output}: this is a file; name a folder')
     for output in _named(options, FILES):
         if Path(output).is_dir():
             raise InputError(f'{output}: this is a folder; name a file')

@@ -63,11 +63,18 @@ def read_mapped_bag(path: str | Path, mapping: Mapping, spoilt: bool = False
     notes += dict.fromkeys(part.note for part in parts if part.note)
     start, t, columns, left_out = join(path, streams)
     record = FlightRecord(t, velocity_in_world(path, columns),
-                          {'source': str(path), 'start_ns': start, 'notes': [*notes, *left_out]}
+                          {'name': _name(path), 'source': str(path), 'start_ns': start,
+                           'notes': [*notes, *left_out]}
                           | _spoilt(parts, streams, start))
     return split_at_resets([record], start, {
         part.counters.topic: (stream.stamps, part.counters.fields())
         for part, stream in zip(parts, streams, strict=True) if part.counters})
+
+
+def _name(path: str | Path) -> str:
+    """Return the name of the flight in a bag, which is a folder or a file."""
+    whole = Path(path).resolve()
+    return whole.name if whole.is_dir() else whole.stem
 
 
 def _by_topic(parts: Sequence[TopicPart], types: Pairs[str, str]) -> dict[str, list[TopicPart]]:

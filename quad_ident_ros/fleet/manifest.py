@@ -105,7 +105,11 @@ def _merged(said: Sequence[Listed]) -> Listed:
 
 
 def is_manifest(path: Path) -> bool:
-    """Return whether a file is a manifest: a CSV table with a column `path`, however written."""
+    """
+    Return whether a file is a manifest: a CSV table with a column `path`, however written.
+
+    One with another name for it, such as `file`, is known by a first row that names a file.
+    """
     if path.suffix != '.csv':
         return False
     try:
@@ -113,10 +117,20 @@ def is_manifest(path: Path) -> bool:
             return False
         # In another encoding, too: that is said of a manifest, where a flight would be refused.
         with open(path, encoding='utf-8-sig', errors='replace', newline='') as file:
-            names = re.split('[,;\t]', file.readline(START).lower())
+            names, row = ([cell.strip(' "\r\n') for cell in re.split('[,;\t]', line)]
+                          for line in (file.readline(START), file.readline(START)))
     except OSError:
         return False
-    return 'path' in (name.strip(' "\r\n') for name in names)
+    return 'path' in map(str.lower, names) or any(
+        Path(cell).suffix and _is_there(path.parent / cell) for cell in row)
+
+
+def _is_there(path: Path) -> bool:
+    """Return whether there is a file; False for what can be no name of one, too."""
+    try:
+        return path.is_file()
+    except (OSError, ValueError):
+        return False
 
 
 def _in_manifest(path: Path) -> Iterator[Listed]:

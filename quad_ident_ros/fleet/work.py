@@ -19,6 +19,7 @@ from quad_ident_ros.data.load import load_all
 from quad_ident_ros.data.quality.fleet import vehicles
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.data.split import joined
+from quad_ident_ros.data.told_apart import renamed
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.diagnose.intake import take_in
 from quad_ident_ros.diagnose.result import Diagnosis
@@ -154,26 +155,9 @@ def _told_apart(reads: Sequence[_Read]) -> list[_Read]:
     of_files = [{str(record.info.get('name')) for record in joined(one.records)} for one in reads]
     counts = Counter(name for names in of_files for name in names)
     top = os.path.commonpath([Path(one.member.path).parent for one in reads])
-    return [_renamed(one, top) if any(counts[name] > 1 for name in names) else one
+    return [replace(one, records=tuple(renamed(one.records, Path(one.member.path), top)))
+            if any(counts[name] > 1 for name in names) else one
             for one, names in zip(reads, of_files, strict=True)]
-
-
-def _renamed(one: _Read, top: str) -> _Read:
-    """Return what was read, with the folder of the file below `top`, or its ending, in names."""
-    path = Path(one.member.path)
-    folder = os.path.relpath(path.parent, top)
-
-    def longer(name: object) -> str:
-        return f'{name}{path.suffix}' if folder == os.curdir else f'{folder}/{name}'
-
-    records = []
-    for record in one.records:
-        info = {**record.info, 'name': longer(record.info.get('name'))}
-        if 'whole' in info:
-            name, source = info['whole']
-            info['whole'] = [longer(name), source]
-        records.append(replace(record, info=info))
-    return replace(one, records=tuple(records))
 
 
 def _diagnosed(reads: list[_Read], group: Group) -> tuple[list[_Read], Diagnosis | None, str]:

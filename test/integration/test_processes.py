@@ -67,7 +67,7 @@ def test_bad_parameters_are_refused_in_one_line(processes):
 @pytest.mark.parametrize('words, said', [
     (['--method', 'ls'], "'--method' is not an option here: parameters are given as --ros-args"),
     (['--ros-args', '-p', 'method'], 'the ROS arguments cannot be used'),
-    (['--ros-args', '--params-file', '/nowhere.yaml'], '/nowhere.yaml: cannot be read: No such'),
+    (['--ros-args', '--params-file', '/nowhere.yaml'], '/nowhere.yaml: there is no such file'),
     (['--ros-args', '--params-file', '/proc/self/environ'], '/proc/self/environ: the file is '),
 ])
 def test_bad_words_are_refused_in_one_line(processes, words, said):

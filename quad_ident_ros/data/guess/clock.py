@@ -99,7 +99,9 @@ def time_unit(values: np.ndarray) -> str:
     start, step = abs(float(finite[0])), float(np.median(steps))
     for unit, factor in (('s', 1.0), ('ms', 1e3), ('us', 1e6), ('ns', 1e9)):
         if CLOCK[0] * factor <= start <= CLOCK[1] * factor:
-            return unit if RATES[0] <= factor / step <= RATES[1] else ''
+            mean = float(steps.mean())      # rows of several streams may come in bursts
+            likely = any(RATES[0] <= factor / one <= RATES[1] for one in (step, mean))
+            return unit if likely else ''
     fits = [unit for unit, factor in (('s', 1.0), ('ms', 1e3), ('us', 1e6), ('ns', 1e9))
             if USUAL[0] <= factor / step <= USUAL[1]]
     if len(fits) > 1:       # steps of 0.25 to 0.4 of one, 250 to 400 of the other

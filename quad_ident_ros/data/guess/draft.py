@@ -27,6 +27,7 @@ from quad_ident_ros.data.tabular import Table
 from quad_ident_ros.data.unit_names import unit_by
 
 OVER = 0.1              # s over which turns are compared, so that noise of samples counts little
+BURST = 16              # rows over which those of a burst and the time between bursts even out
 SHORTEST = 3            # letters of a name that is counted
 SAME = 0.98             # correlation of two streams of one quantity, as raw and filtered
 FORMATION = 0.2         # of the extent of a flight that two positions in it are apart
@@ -78,7 +79,8 @@ class Draft:
 
     def values(self, names: Sequence[str]) -> np.ndarray:
         """Return columns, (N, k), interpolated where rows of other streams lie in between."""
-        return np.stack([filled(self.table.columns[name]) for name in names], axis=-1)
+        return np.stack([filled(self.table.columns[name], self.stamps) for name in names],
+                        axis=-1)
 
     def logged(self, names: Sequence[str]) -> np.ndarray:
         """Return columns as they are, (N, k)."""
@@ -94,11 +96,20 @@ class Draft:
         assert self.t is not None
         return np.diff(self.t)
 
+    def period(self) -> float:
+        """Return the usual time from row to row, s, also where rows come in bursts."""
+        assert self.t is not None
+        usual = float(np.nanmedian(self.dt()))
+        if len(self.t) > 2 * BURST:
+            spans = self.t[BURST:] - self.t[:-BURST]
+            usual = max(usual, float(np.nanmedian(spans)) / BURST)
+        return max(usual, 1e-6)
+
     def turning(self, attitude: np.ndarray, gyro: np.ndarray, over: float = OVER
                 ) -> tuple[np.ndarray, np.ndarray]:
         """Return the rates (n, 3) of attitudes and of the gyro, over the same steps (s)."""
         assert self.t is not None
-        width = max(1, round(over / max(float(np.nanmedian(self.dt())), 1e-6)))
+        width = max(1, round(over / self.period()))
         if len(attitude) < 4 * width:
             width = 1
         sums = np.vstack([np.zeros(3), np.cumsum(0.5 * (gyro[1:] + gyro[:-1])

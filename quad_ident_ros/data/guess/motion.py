@@ -158,7 +158,7 @@ def _by_velocity(draft: Draft, names: Sequence[str]) -> str:
         return ''       # it is in mm or cm, and so is the position
     said = said or 'm/s'
     place, speed = draft.values(names), draft.values(given) * factor_of('vx', said)
-    width = max(1, round(SPAN / max(float(np.nanmedian(draft.dt())), 1e-6)))
+    width = max(1, round(SPAN / draft.period()))
     if len(place) < 4 * width:
         return ''
     moved = place[width:] - place[:-width]
@@ -205,7 +205,7 @@ def bends(draft: Draft, place: np.ndarray, attitude: np.ndarray
     leaning = GRAVITY * np.stack([2 * (x * z + w * y), 2 * (y * z - w * x)], axis=-1) / up[:, None]
     for _ in range(2):      # to a velocity, to a position
         leaning = summed(draft, leaning)
-    width = max(1, round(SPAN / max(float(np.nanmedian(draft.dt())), 1e-6)))
+    width = max(1, round(SPAN / draft.period()))
     if len(leaning) < 4 * width:
         return None
     first, second = (one[2 * width:] - 2 * one[width:-width] + one[:-2 * width]
@@ -255,7 +255,7 @@ def _off(draft: Draft, speed: np.ndarray) -> list[float] | None:
                     for one in readings]
         else:
             return None
-        width = max(1, round(SPAN / max(float(np.nanmedian(dt)), 1e-6)))
+        width = max(1, round(SPAN / draft.period()))
         if len(speed) < 4 * width:
             return None
         sums = [np.cumsum(np.nan_to_num(one), axis=0) for one in rest]

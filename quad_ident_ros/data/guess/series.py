@@ -11,13 +11,20 @@ UNIT, MOSTLY = 0.02, 0.95   # off the length 1, as of rounded ones; and the shar
 RELATED = 0.5           # correlation from which on a ratio of two streams says something
 
 
-def filled(values: np.ndarray) -> np.ndarray:
-    """Return values (N,) without gaps, those before the first and after the last left out."""
+def filled(values: np.ndarray, stamps: np.ndarray | None = None) -> np.ndarray:
+    """
+    Return values (N,) without gaps, those before the first and after the last left out.
+
+    They are interpolated over stamps (N,) that never fall, in any unit, else over the rows: those
+    of several streams may come in bursts, in which hardly any time passes.
+    """
     known = np.isfinite(values)
     if known.all() or known.sum() < 2:
         return values
-    rows = np.arange(len(values))
-    return np.interp(rows, rows[known], values[known], left=np.nan, right=np.nan)
+    at = np.arange(len(values), dtype=float)
+    if stamps is not None and (np.diff(stamps) >= 0.0).all() and np.isfinite(stamps).all():
+        at = stamps
+    return np.interp(at, at[known], values[known], left=np.nan, right=np.nan)
 
 
 def alike(one: np.ndarray, other: np.ndarray) -> float:

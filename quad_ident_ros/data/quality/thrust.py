@@ -77,12 +77,16 @@ def other_vehicle(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding
     if 1.0 / OTHER < ratio < OTHER or not 1.0 / APART < ratio < APART:
         return []
     wrong = rotors.order_and_spin(record, vehicle)
+    signals = bool(record.info.get('commands'))
     more = ', and they turn the body as rotors in other places would' if wrong else ''
     return [Finding(
         'other_vehicle', 'error' if wrong else 'warning', 'vehicle file',
         f'the commands give {ratio:.2g} times the thrust with which {vehicle.name} flies{more}: '
-        'mass, thrust coefficient and inertia seem to be those of another vehicle',
+        'mass, thrust coefficient and inertia seem to be those of another vehicle'
+        + (', or its rotors turn at other speeds by these signals' if signals else ''),
         'name the vehicle that flew with --vehicle, or weigh it and measure its thrust'
+        + ('; or give the map from signals to speeds, of which the finding commands has the one '
+           'used, as `motors` in the vehicle file or `actuators` of a mapping' if signals else '')
         + (f'; or {units.OF_ROTORS}' if are_thrusts(vehicle.motors) else '')
         + _or_signals(record, vehicle))]
 

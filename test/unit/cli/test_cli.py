@@ -149,6 +149,23 @@ def test_a_file_in_the_place_of_a_folder_is_named(flights, tmp_path, capsys):
     assert f'{tmp_path / "b.csv"} is a file, not a folder' in capsys.readouterr().err
 
 
+@pytest.mark.parametrize('call', ['simulate small_angle', 'demo', 'paper'])
+def test_a_file_that_should_be_a_folder_is_named(call, flights, capsys):
+    assert main([*call.split(), '-o', str(flights['z'])]) == 2
+    assert f'{flights["z"]}: this is a file; name a folder' in capsys.readouterr().err
+
+
+@pytest.mark.parametrize('call, said', [
+    ('fly circle --seed 1.5', "--seed: expected a whole number, got '1.5'"),
+    ('fly circle --duration long', "--duration: expected a number, got 'long'"),
+    ('info a.csv --from start', "--from: expected a number, got 'start'")])
+def test_what_is_no_number_is_named_with_what_is_expected(call, said, capsys):
+    with pytest.raises(SystemExit) as end:
+        main(call.split())
+    assert end.value.code == 2
+    assert said in capsys.readouterr().err
+
+
 @pytest.mark.parametrize('call', ['fit FLIGHT --vehicle paper_quadrotor --free mass',
                                   'diagnose FLIGHT --vehicle paper_quadrotor'])
 def test_a_vehicle_is_written_to_no_other_kind_of_file(call, flights, tmp_path, capsys):

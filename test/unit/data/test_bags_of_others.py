@@ -53,6 +53,14 @@ def test_the_mapping_to_begin_with_reads_what_is_read_without_it(tmp_path):
         np.testing.assert_array_equal(mapped.columns[name], values)
 
 
+def test_a_flight_has_the_name_of_its_bag(tmp_path):
+    """By it several bags of one diagnosis are told apart."""
+    folder = write2(tmp_path / 'third_lap', [*odometry(FLIGHT), *imu(FLIGHT)])
+    assert load(folder).info['name'] == 'third_lap'
+    [file] = folder.glob('*.mcap')
+    assert load(file.rename(tmp_path / 'fourth_lap.mcap')).info['name'] == 'fourth_lap'
+
+
 def test_a_bag_that_was_not_copied_whole_says_so_without_any_message(tmp_path):
     others_bag(tmp_path / 'bag', FLIGHT)
     [file] = (tmp_path / 'bag').glob('*.mcap')

@@ -347,3 +347,19 @@ def test_thrusts_in_newtons_are_refused_with_the_motors_that_read_them(tmp_path,
     told = yaml.safe_load(str(caught.value).split('motors: ')[1])
     read = load(path, vehicle=replace(made, motors=motors_from('v', told)))
     np.testing.assert_allclose(read.stack(*CMD), SPEEDS, rtol=1e-6)
+
+
+@pytest.mark.parametrize('signals', [True, False])
+def test_too_much_thrust_by_signals_may_be_that_of_their_map(signals):
+    """Rotors turn at full signal at two thirds of the speed that the vehicle file has."""
+    outputs = FLIGHT.stack(*CMD) / 1700
+    fast = replace(VEHICLE, speed_min=0.0, speed_max=1700 * 1.5)
+    columns = {name: values for name, values in FLIGHT.columns.items() if name not in CMD}
+    record = FlightRecord(FLIGHT.t, columns | (
+        dict(zip(OUTPUTS, outputs.T, strict=True)) if signals else
+        dict(zip(CMD, 1.5 * FLIGHT.stack(*CMD).T, strict=True))))
+    if signals:
+        [record] = commanded([record], fast)      # as their size says
+    [found] = [one for one in findings(record, fast) if one.code == 'other_vehicle']
+    assert ('at other speeds by these signals' in found.message) == signals
+    assert ('map from signals to speeds' in found.remedy) == signals

@@ -12,6 +12,7 @@ from table_files import others, table
 from quad_ident_ros.data.load import load
 from quad_ident_ros.data.mapping import mapping_from
 from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.model.attitude import conjugate, rotate
 
 NAMES = {P: 'pos', V: 'vel', W: 'gyro', A: 'acc', Q: 'q'}
 
@@ -112,6 +113,29 @@ def test_times_of_more_than_10_kHz_are_not_taken_for_seconds(tmp_path):
     """Without an attitude nothing but the rate tells that they are in hours."""
     path = table(tmp_path, columns(flight(), flight().t / 3600, P, V, Q, name='time'))
     refused(path, "t: the unit of 'time'")
+
+
+@pytest.mark.parametrize('apart', [1e-3, 1e-4, 2e-5])
+@pytest.mark.parametrize('frame', ['world', 'body'])
+def test_rows_of_several_streams_may_come_in_bursts(tmp_path, frame, apart):
+    """As messages of MAVLink do: hardly any time passes between those of one burst."""
+    record = flight()
+    streams = ('pos', 'vel'), ('q', 'gyro', 'acc'), ('m',)
+    every = others(record)
+    if frame == 'body':
+        speed = rotate(conjugate(record.stack(*Q)), record.stack(*V))
+        every |= dict(zip(('vel_x', 'vel_y', 'vel_z'), speed.T, strict=True))
+    rows = {'timestamp': (1.7e9 + record.t[:, None] + apart * np.arange(len(streams))).ravel()}
+    for name, values in every.items():
+        if name not in ('timestamp', 'vbat'):
+            cells = np.full((len(record), len(streams)), np.nan)
+            cells[:, [name.startswith(one) for one in streams].index(True)] = values
+            rows[name] = cells.ravel()
+    read = load(table(tmp_path, rows))
+    np.testing.assert_allclose(np.diff(read.t), 0.01, atol=1e-6)
+    for name in (*P, *V):
+        np.testing.assert_allclose(
+            read.columns[name], record.columns[name][1:len(read) + 1], atol=0.05)
 
 
 def test_a_parquet_file_is_no_exception(tmp_path):

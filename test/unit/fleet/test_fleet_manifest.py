@@ -159,6 +159,16 @@ def test_what_is_wrong_with_a_manifest_is_said_with_its_place(tmp_path, text, sa
     assert '\n' not in str(caught.value)
 
 
+@pytest.mark.parametrize('text', ['file,vehicle\na.csv,seven\n', 'vehicle,log\nseven,"a.csv"\n'])
+def test_a_manifest_without_a_column_for_the_path_is_no_flight(tmp_path, text):
+    write(tmp_path / 'a.csv')
+    manifest = write(tmp_path / 'm.csv', text)
+    with pytest.raises(InputError, match='m.csv, line 1: there is no column `path`; write the na'):
+        listed([str(manifest)])
+    one, = listed([str(tmp_path)])      # nor is it among those of a folder
+    assert one.path == str(tmp_path / 'a.csv')
+
+
 def test_a_manifest_in_another_encoding_is_no_flight(tmp_path):
     manifest = tmp_path / 'm.csv'
     manifest.write_bytes('path,vehicle\na.csv,über\n'.encode('cp1252'))

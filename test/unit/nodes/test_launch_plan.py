@@ -63,7 +63,7 @@ def test_lists_and_numbers_arrive_as_such():
     ({'trim': '[.nan, 0, 0, 0]'}, 'trim'),
     ({'effects': '[2026-99-99]'}, 'effects: expected a list'),
     ({'trim': '[' * 5000}, 'trim: expected a list'),
-    ({'window': '[1'}, 'window'), ({'params_file': '/nowhere.yaml'}, 'cannot be read')])
+    ({'window': '[1'}, 'window'), ({'params_file': '/nowhere.yaml'}, 'no such file')])
 def test_bad_arguments_are_refused_by_name(values, said):
     with pytest.raises(InputError, match=said):
         Tables('identify').plan(**values)
