@@ -16,6 +16,7 @@ LAYOUTS = (
     (10, 18, 3.0, '', {}), (10, 18, 1.5, '', {}), (10, 18, 0.5, '', {}), (4, 18, 1.5, '', {}),
     (20, 30, 1.5, '', {}),
     (10, 18, 1.5, 'one vehicle follows no temperature', {'follows': (1.0, 0.0)}),
+    (10, 18, 1.0, 'one vehicle follows no temperature', {'follows': (1.0, 0.0)}),
     (10, 18, 1.5, 'three vehicles follow none', {'follows': (1.0, 0.0, 0.0, 0.0)}),
     (10, 18, 1.5, 'it is told within 1.5 °C', {'wrong': 1.5}))
 """Vehicles, flights of each, degrees by which days differ from the season, what else is so."""

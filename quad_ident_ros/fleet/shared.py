@@ -27,9 +27,8 @@ WAYS = 2            # in which Coefficients are estimated
 OWN = 0.1
 """
 Probability that a vehicle has coefficients of its own: nobody knows how many have another battery
-or a sensor at a warm place. With 0.01, 8 of 150 made fleets (of ten vehicles, in a spring whose
-days differ by 1 degree, one with a coefficient of 0) had a false drift, with this one 3; of 50
-real drifts it finds 26 in place of 29.
+or a sensor at a warm place, so one of ten may (convention). With less, a vehicle that follows the
+temperature otherwise seems to drift more often; `./run bench spring` has such vehicles.
 """
 Shared = tuple[str, tuple[int, ...]]
 """A covariate, and the numbers of the Series of sisters that have it."""

@@ -29,7 +29,8 @@ from quad_ident_ros.model.vehicle import Vehicle
 
 STATES = ('px', 'py', 'pz', 'vx', 'vy', 'vz', 'qw', 'qx', 'qy', 'qz', 'wx', 'wy', 'wz')
 LONGEST_STEP = 0.01     # s, of the integration: errors of about 1e-6 of what happens in it
-BREAK = 3.0             # s between two samples that are of different parts of a flight
+# s; what changes along a flight is as it was after less, and is not followed over more.
+BREAK = 3.0
 
 
 @dataclass(frozen=True, eq=False)

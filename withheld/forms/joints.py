@@ -4,10 +4,10 @@
 
 import numpy as np
 
-from withheld.forms.body import Coupled
+from withheld.forms.body import Sprung
 
 
-class Jointed(Coupled):
+class Jointed(Sprung):
     """
     Legs and aerials on joints whose springs hold them at a stop: they yield beyond a moment.
 
@@ -19,15 +19,6 @@ class Jointed(Coupled):
     FREQUENCY, DAMPING = 2.0 * np.pi * 2.0, 0.25    # rad/s, beyond; of the critical one
     FINE = 0.0025                   # s, the steps
 
-    def begin(self, rng):
-        """Start at the stops."""
-        self._angle, self._turning, self._rate = np.zeros(3), np.zeros(3), np.zeros(3)
-
-    def wrench(self, now):
-        """Return the moment of the joints."""
-        self._rate = now.rate
-        return np.zeros(3), self.loads * self._pull()
-
     def after(self, step, rotation, acceleration):
         """Let them yield."""
         count = int(np.ceil(step / self.FINE - 1e-9))
@@ -37,6 +28,4 @@ class Jointed(Coupled):
 
     def _pull(self):
         """Return the moment on the body over the inertia, 1/s^2."""
-        return self.TIGHT * np.tanh(self._angle / self.PLAY) + self.FREQUENCY * (
-            self.FREQUENCY * self._angle
-            + 2.0 * self.DAMPING * (self._turning - self._rate))
+        return self.TIGHT * np.tanh(self._angle / self.PLAY) + super()._pull()
