@@ -32,7 +32,7 @@ class Blown(One):
         q = self.state[:, 6:10]
         back = np.concatenate([q[:, :1], -q[:, 1:]], axis=1)
         against = self.state[:, 3:6] - gust
-        force = turned(back, -DRAG * np.linalg.norm(against) * against)
+        force = turned(back, -self.square * np.linalg.norm(against) * against)
         self.state = self.advance(self.state, commands[None], np.array([dt]), force, 0.0)
         self.t += dt
         return self.state[0, :13]
@@ -46,10 +46,11 @@ def reference(t, phase):
                      *(-sizes * rates ** 2 * np.sin(angles)), 0, 0, 0, 0.3 * np.sin(0.7 * t)])
 
 
-def flight(seed, gusts):
-    """Return the record of a flight in gusts, or in still air."""
+def flight(seed, wind, drag=DRAG):
+    """Return the record of a flight in gusts of a deviation `wind` m/s, 0 in still air."""
     rng = np.random.default_rng(seed)
     vehicle, pilot, phase = Blown(), Cascade(), rng.uniform(0.0, 6.0, 3)
+    vehicle.square = drag
     # An Ornstein-Uhlenbeck process: what Dryden's spectrum is along the wind.
     vehicle.knots = np.arange(0.0, SECONDS + 0.5, 0.5)
     keeps = np.exp(-0.5 / 6.0)
@@ -57,7 +58,7 @@ def flight(seed, gusts):
     for k in range(len(vehicle.knots)):
         before = keeps * vehicle.winds[:2, k - 1] if k else 0.0
         share = np.sqrt(1.0 - keeps ** 2) if k else 1.0
-        vehicle.winds[:2, k] = before + share * LIGHT * gusts * rng.normal(size=2)
+        vehicle.winds[:2, k] = before + share * wind * rng.normal(size=2)
     start = reference(0.0, phase)
     state = np.concatenate([start[:6], [1.0, 0.0, 0.0, 0.0], np.zeros(3)])
     vehicle.reset(np.concatenate([state, np.zeros(4)]))
@@ -77,14 +78,26 @@ def flight(seed, gusts):
 
 @pytest.fixture(scope='module')
 def gusty():
-    return diagnose([flight(seed, True) for seed in range(4)], load_vehicle('hummingbird'))
+    return diagnose([flight(seed, LIGHT) for seed in range(4)], load_vehicle('hummingbird'))
+
+
+def holds(found, drag):
+    """Return whether a diagnosis names the drag of the body and how large it is."""
+    [row] = [row for row in found.ranking if row.effect == 'body_drag']
+    value = row.parameters['horizontal']
+    return ('body_drag' in found.verdict and abs(value.value - drag) < 3.0 * value.std
+            and value.std < 0.5 * drag)
 
 
 def test_a_drag_is_named_by_which_gusts_act(gusty):
-    assert 'body_drag' in gusty.verdict
-    [drag] = [row for row in gusty.ranking if row.effect == 'body_drag']
-    value = drag.parameters['horizontal']
-    assert abs(value.value - DRAG) < 3.0 * value.std and value.std < 0.5 * DRAG
+    assert holds(gusty, DRAG)
+
+
+@pytest.mark.xfail(strict=True, reason='gusts as fast as the vehicle make its drag seem a third '
+                   'of what it is: see docs/diagnosis.md, Gusts')
+def test_a_large_drag_is_as_large_in_strong_gusts():
+    found = diagnose([flight(seed, 2.0, 0.15) for seed in range(4)], load_vehicle('hummingbird'))
+    assert holds(found, 0.15)
 
 
 def test_gusts_are_each_flights_own_and_stay_in_the_gap(gusty):
@@ -100,13 +113,13 @@ def test_gaps_with_and_without_an_effect_have_no_gusts():
     # Of the drag of the file gusts would still make a force where that of the body is taken out.
     file = replace(load_vehicle('hummingbird'), linear_drag=(0.05, 0.05, 0.05),
                    effects={'wind': {'x': 1.0}})
-    found = diagnose([flight(0, True)], file)
+    found = diagnose([flight(0, LIGHT)], file)
     assert 'gusts' in found.nuisances and 'body_drag' in found.verdict
     without, gap = found.gap.without['body_drag'], found.gap
     assert without['velocity'] > gap.after['velocity'] > 2.0 * gap.noise['velocity']
 
 
 def test_still_air_has_no_gusts():
-    still = diagnose([flight(seed, False) for seed in range(4)], load_vehicle('hummingbird'))
+    still = diagnose([flight(seed, 0.0) for seed in range(4)], load_vehicle('hummingbird'))
     assert still.verdict == ('body_drag',)
     assert 'gusts' not in (still.nuisances or {})
