@@ -20,6 +20,7 @@ from typing import Any, Generic, TypeVar
 import uuid
 
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.memory import hand_back_large
 from quad_ident_ros.resources import PACKAGE
 from quad_ident_ros.schema import shown
 
@@ -286,6 +287,7 @@ def _limited(function: Callable[[Item], Any], item: Item, seconds: float | None,
 
     Nothing else ends what hangs in a library. Where it holds Python's lock, the C library does.
     """
+    hand_back_large()
     if seconds is None:
         return function(item)
     from distributed import get_worker

@@ -6,7 +6,8 @@ import ctypes
 import sys
 
 LIBRARY = ctypes.CDLL(None) if sys.platform == 'linux' else None
-THRESHOLD, LARGE = -3, 8 * 2 ** 20      # M_MMAP_THRESHOLD of malloc.h, and bytes of an array
+MAPPED, LARGE = -3, 8 * 2 ** 20     # M_MMAP_THRESHOLD of malloc.h, and bytes of an array
+TRIMMED, KEPT = -1, 64 * 2 ** 20    # M_TRIM_THRESHOLD, and bytes for the arrays that come next
 
 
 def give_back() -> None:
@@ -26,8 +27,11 @@ def hand_back_large() -> None:
     Let large arrays go back to the system as soon as they are freed, where its C library can.
 
     That of Linux does so with what is larger than any array that was freed before: after one of
-    30 MB it keeps all smaller ones, with gaps between them that fit none of the next.
+    30 MB it keeps all smaller ones, with gaps between them that fit none of the next. Small ones
+    stay: Dask has its workers give back all that is freed, and almost half of the time of a
+    diagnosis is then that of mapping the pages of its arrays anew.
     """
     option = getattr(LIBRARY, 'mallopt', None)
     if option is not None:
-        option(THRESHOLD, LARGE)
+        option(MAPPED, LARGE)
+        option(TRIMMED, KEPT)

@@ -5,6 +5,7 @@
 from operator import length_hint
 import os
 import re
+import resource
 import signal
 import subprocess
 import sys
@@ -16,6 +17,7 @@ import pytest
 
 from quad_ident_ros.cluster import cluster, Done, results, TimeOver, values, WorkerDied
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.memory import LIBRARY
 
 pytest.importorskip('distributed', reason="Dask is not installed: pip install '.[fleet]'")
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group('dask')]
@@ -55,6 +57,14 @@ def die_often(item):
     return number
 
 
+def faults_of_arrays(number):
+    """Return how many pages the system maps for arrays of 1 MB, one after the other."""
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
+    for _ in range(number):
+        np.ones(2 ** 17)
+    return resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before
+
+
 def hang_with_the_lock(number):
     """Hang where no other Python thread gets a turn."""
     return re.match('(a+)+$', 'a' * 60 + 'b') if number else number
@@ -87,6 +97,13 @@ def test_items_are_taken_as_they_are_needed(client):
     for count, _ in enumerate(results(client, square, left), 1):
         most = max(most, 200 - length_hint(left) - count)
     assert count == 200 and most <= 8
+
+
+@pytest.mark.skipif(not hasattr(LIBRARY, 'mallopt'), reason='the C library has no such option')
+def test_workers_use_the_memory_of_freed_arrays_again(client):
+    """Dask has them give all of it back, and 256 pages of 4 KB are mapped for each array then."""
+    (done,) = results(client, faults_of_arrays, [200])
+    assert done.value < 256 * 200 / 10
 
 
 def test_what_ends_hangs_or_fills_a_worker_does_not_stop_the_rest(client):
