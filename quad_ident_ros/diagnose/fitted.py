@@ -53,6 +53,11 @@ def effects_in(chosen: tuple) -> tuple:
     return tuple(cause for cause in chosen if cause.nuisance is None)
 
 
+def nuisances_in(chosen: tuple) -> tuple:
+    """Return those of a set of candidates that are nuisances."""
+    return tuple(cause for cause in chosen if cause.nuisance is not None)
+
+
 def refitted(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, chosen: tuple,
              noise: list[np.ndarray], nuisances: NuisanceValues, starts: list[np.ndarray],
              slopes: Slopes | None = None, scatter: float = 1.0,

@@ -104,19 +104,24 @@ class Frame:
         return whole - (basis @ (basis.transpose(0, 2, 1) @ whole[..., None]))[..., 0]
 
 
-def frame_at(flights: list, vehicle: Vehicle, fit: Estimate, wanted: list, rules: Rules) -> Frame:
-    """Return the Frame of flights around an Estimate in some places of z and the wrench's."""
+def frame_at(flights: list, vehicle: Vehicle, fit: Estimate, wanted: list, rules: Rules,
+             scale: list | None = None) -> Frame:
+    """
+    Return the Frame of flights around an Estimate in some places of z and the wrench's.
+
+    scale: of another Frame, to whose fit this one is compared; by default that of the Estimate.
+    """
     wanted = sorted({*wanted, *WRENCH})
     raws = [errors_along(flight, vehicle, z, start)
             for flight, z, start in zip(flights, fit.vectors, fit.starts, strict=True)]
     slopes = slopes_at(flights, vehicle, fit.z, fit.vectors, fit.starts, wanted)
-    scale, basis, block = [], [], []
-    for tangent, raw, residual, sigma, flight in zip(slopes.tangents, raws, fit.residuals,
-                                                     fit.noise, flights, strict=True):
-        weight = weights_of(residual, sigma, flight) / sigma
+    scale = scale or [(weights_of(residual, sigma, flight) / sigma).reshape(len(residual), -1)
+                      for residual, sigma, flight in zip(fit.residuals, fit.noise, flights,
+                                                         strict=True)]
+    basis, block = [], []
+    for tangent, raw, weight, flight in zip(slopes.tangents, raws, scale, flights, strict=True):
         initial = Tangent(tangent.table[:, :ERRORS + 1])
-        scale.append(weight.reshape(len(raw), -1))
-        basis.append(linear_of(initial, raw, weight, False).basis)
+        basis.append(linear_of(initial, raw, weight.reshape(raw.shape), False).basis)
         # What the air does is not modelled in inertial flights, and changes with the motion.
         span = flight.segment if inertial(flights) else rules.form_time
         number = (flight.course.t[flight.first] / span).astype(int)

@@ -3,6 +3,7 @@
 """Which effects explain flights: sets of candidates compared jointly, each refitted."""
 
 from collections.abc import Callable, Collection, Sequence
+from dataclasses import replace
 
 import numpy as np
 from scipy.linalg import block_diag
@@ -15,6 +16,7 @@ from quad_ident_ros.diagnose.fitted import (
     effects_in,
     Fitted,
     fitted_of,
+    nuisances_in,
     out_of_bounds,
     prior_deviations,
     refitted,
@@ -47,6 +49,8 @@ from quad_ident_ros.model.vehicle import Vehicle
 # How long and how far the search goes; the thresholds of a verdict are those of Rules.
 ROUNDS = 6
 KEPT = 10           # fitted sets that are judged again around each new best one
+FAR = 30.0          # log evidence behind the best one up to which a set that has other delays or
+                    # lags is judged around itself: slopes around others were wrong by up to 14
 PASSES = 3          # times, at most, in each stage, that the noise is estimated again
 ONCE = 0.8          # share of the progress for the first search: a second one is rare
 LOST = 4.0          # times the scatter that a fit may cost more than a subset does
@@ -122,6 +126,8 @@ class _Search:
             self.noise = self.whole_noise(self.nothing(self.noise))
         self.tried = {(): self.nothing(self.noise)}
         self.best, self.judged, self.ranked = None, {}, []
+        self.stood: tuple = ()
+        self.around: set[tuple] = set()
 
     def nothing(self, noise: list[np.ndarray]) -> Estimate:
         """Return the Estimate of the empty set."""
@@ -220,38 +226,39 @@ class _Search:
         vars(self).pop('frame', None)   # two at once would be most of a diagnosis' memory
         give_back()
         self.frame = frame_at(self.flights, self.vehicle, fit, layout.wanted, self.rules)
+        self.stood, self.around = chosen, set()
         grids = size_grids(self.vehicle, self.noise, self.rules)
         before = [one.chosen for one in self.order()[:KEPT]]
         known, self.grids = self.judged.get(chosen), grids
         sizes = known.sizes if known else (0, 0)
-        self.quadratic = self.quadratic_of(fit, chosen, layout, everyone, grids, sizes)
+        self.quadratic = self.quadratic_of(fit, chosen, self.frame, self.columns, everyone, sizes)
         self.judged = {}
         if known is None:   # the size of the discrepancy shows around here
-            self.quadratic = self.quadratic_of(fit, chosen, layout, everyone, grids,
+            self.quadratic = self.quadratic_of(fit, chosen, self.frame, self.columns, everyone,
                                                self.judge(chosen).sizes)
             self.judged = {}
         for key in before:
             self.judge(key)
 
-    def quadratic_of(self, fit: Estimate, chosen: tuple, layout: Layout, everyone: NuisanceValues,
-                     grids: tuple, sizes: tuple) -> Quadratic:
-        """Return the Quadratic around an Estimate, all candidates free."""
+    def quadratic_of(self, fit: Estimate, chosen: tuple, frame: Frame, columns: list[int],
+                     nuisances: NuisanceValues, sizes: tuple) -> Quadratic:
+        """Return the Quadratic around an Estimate, in some columns and nuisances."""
+        layout = Layout(columns, nuisances.columns, len(self.flights))
         distances = distances_of(chosen, fit, self.vehicle)
-        normal = normal_at(self.frame, fit, layout, distances,
-                           tuple(grid[k] for grid, k in zip(grids, sizes, strict=True)),
+        normal = normal_at(frame, fit, layout, distances,
+                           tuple(grid[k] for grid, k in zip(self.grids, sizes, strict=True)),
                            form_errors_of(distances, self.rules))
         lower, upper, _ = limits(self.vehicle)
-        wide = prior_deviations(self.vehicle, self.rules)[self.columns]
-        null = nominal(self.vehicle)[self.columns]
-        beyond = np.full(everyone.values.size, np.inf)
+        wide = prior_deviations(self.vehicle, self.rules)[columns]
+        null = nominal(self.vehicle)[columns]
+        beyond = np.full(nuisances.values.size, np.inf)
         # Without candidates there is nothing whose gradient could scatter.
-        scatter = (float(np.median(scatter_of(normal)[:len(self.columns)])) if self.columns
-                   else 1.0)
+        scatter = float(np.median(scatter_of(normal)[:len(columns)])) if columns else 1.0
         return Quadratic(normal.information, normal.gradient, normal.cost,
-                         np.append(fit.z[self.columns] - null, everyone.values),
-                         block_diag(np.diag(wide ** -2.0), everyone.precision),
-                         np.append(lower[self.columns] - null, -beyond),
-                         np.append(upper[self.columns] - null, beyond), scatter)
+                         np.append(fit.z[columns] - null, nuisances.values),
+                         block_diag(np.diag(wide ** -2.0), nuisances.precision),
+                         np.append(lower[columns] - null, -beyond),
+                         np.append(upper[columns] - null, beyond), scatter)
 
     def judge(self, chosen: tuple) -> Fitted:
         """Find the log evidence of a set that was fitted."""
@@ -260,6 +267,22 @@ class _Search:
             self.judged[chosen] = fitted_of(chosen, self.tried[chosen], self.vehicle, self.frame,
                                             self.quadratic, self.rows, self.grids, self.rules,
                                             start)
+        return self.judged[chosen]
+
+    def judge_around(self, chosen: tuple) -> Fitted:
+        """Find the log evidence of a set by slopes around itself, its errors weighed as others."""
+        if chosen not in self.around:
+            fit, sizes = self.tried[chosen], self.judge(chosen).sizes
+            layout = Layout(fit.columns, fit.nuisances.columns, len(self.flights))
+            frame = frame_at(self.flights, self.vehicle, fit, layout.wanted, self.rules,
+                             self.frame.scale)
+            quadratic = replace(self.quadratic_of(fit, chosen, frame, fit.columns, fit.nuisances,
+                                                  sizes), scatter=self.quadratic.scatter)
+            rows = _rows(effects_in(chosen), nuisances_in(chosen), fit.columns,
+                         len(self.flights))
+            self.judged[chosen] = fitted_of(chosen, fit, self.vehicle, frame, quadratic, rows,
+                                            self.grids, self.rules, sizes)
+            self.around.add(chosen)
         return self.judged[chosen]
 
     def order(self) -> list[Fitted]:
@@ -306,6 +329,9 @@ class _Search:
     def simplest(self, keys: Sequence[tuple]) -> Fitted:
         """Return the simplest of those sets that are about as good as the best of them."""
         sets = [self.judge(key) for key in keys]
+        least = max(one.evidence for one in sets) - FAR
+        sets = [self.judge_around(one.chosen) if one.evidence > least
+                and _actuators(one.chosen) != _actuators(self.stood) else one for one in sets]
         least = max(one.evidence for one in sets) - self.rules.alike
         return min((one for one in sets if one.evidence > least),
                    key=lambda one: (len(one.chosen), -one.evidence))
@@ -337,6 +363,9 @@ class _Search:
             self.ranked = [one for one in self.ranked if keeps is not _plain or _plain(one[1])]
             self.best = plain if keeps is _plain else told
         self.share_alike()
+        if _actuators(self.best.chosen) != _actuators(self.stood):
+            self.stand_at(self.best.chosen)
+            self.best = self.simplest(list(self.judged))
 
     def share_alike(self) -> None:
         """
@@ -406,6 +435,11 @@ class _Search:
 def _plain(chosen: tuple) -> bool:
     """Return whether no effect of a set is in a form with more parameters than usual."""
     return all(cause.plain for cause in effects_in(chosen))
+
+
+def _actuators(chosen: tuple) -> set[Candidate]:
+    """Return the delays and lags of a set: how the motion answers them is not linear in them."""
+    return {cause for cause in effects_in(chosen) if EFFECTS[cause.effect].actuator}
 
 
 def _names(fitted: Fitted) -> set[str]:

@@ -78,6 +78,7 @@ def searched(costs, evidence):
     search.all_causes = tuple(dict.fromkeys(cause for key in costs for cause in key))
     search.rules, search.ranked, search.judged = RULES, [], {}
     search.flights = search.vehicle = search.noise = search.slow = None
+    search.stood = ()
     search.quadratic = SimpleNamespace(scatter=1.0)
     search.tried = {key: SimpleNamespace(cost=cost) for key, cost in costs.items()}
 
@@ -92,8 +93,9 @@ def searched(costs, evidence):
 
 def test_a_form_at_its_bound_gives_way_to_the_best_of_all_sets_that_were_fitted(monkeypatch):
     """The usual form in its place is far worse here than a set that was not judged of late."""
-    usual, odd = Candidate('a', 'usual', (0,)), Candidate('a', 'odd', (0,), usual=False)
-    other = Candidate('b', 'b', (1,))
+    usual, odd = (Candidate('inflow', 'usual', (0,)),
+                  Candidate('inflow', 'odd', (0,), usual=False))
+    other = Candidate('body_drag', 'planar', (1,))
     evidence = {(odd,): 100.0, (usual,): 0.0, (other,): 90.0}
     search = searched({key: -value for key, value in evidence.items()}, evidence)
     monkeypatch.setattr(selecting, 'within_bounds',
@@ -104,14 +106,14 @@ def test_a_form_at_its_bound_gives_way_to_the_best_of_all_sets_that_were_fitted(
 
 
 @pytest.mark.parametrize('effect, saved, error, kept', [
-    ('a', 0.005, 0.001, False),    # of one effect, the form with fewer parameters
-    ('a', 0.02, 0.001, True),      # unless it leaves more than 1 % of the cost
-    ('b', 0.005, 0.001, True),     # another effect is no form: the evidence decides
-    ('b', 0.005, 0.1, False)])     # if the flights show another form
+    ('inflow', 0.005, 0.001, False),    # of one effect, the form with fewer parameters
+    ('inflow', 0.02, 0.001, True),      # unless it leaves more than 1 % of the cost
+    ('body_drag', 0.005, 0.001, True),     # another effect is no form: the evidence decides
+    ('body_drag', 0.005, 0.1, False)])     # if the flights show another form
 def test_more_parameters_give_way_to_a_form_of_the_same_effect(
         monkeypatch, effect, saved, error, kept):
     vehicle = load_vehicle('hummingbird')
-    curve = Candidate('a', 'a curve', (0, 1), usual=False, plain=False)
+    curve = Candidate('inflow', 'curve', (0, 1), usual=False, plain=False)
     fewer = Candidate(effect, effect, (2,))
     search = searched({(curve,): 72000.0, (fewer,): 72000.0 * (1.0 + saved)},
                       {(curve,): 20.0, (fewer,): 0.0})
@@ -194,6 +196,25 @@ def test_clocks_that_all_flights_have_late_are_a_delay(offsets, joins):
     for chosen, start in fits:
         assert start[INDEX['actuation_delay.delay']] == pytest.approx(np.mean(offsets))
         assert {cause.effect for cause in chosen} == {CLOCK, 'actuation_delay'}
+
+
+def test_delays_and_lags_are_judged_alike_wherever_flights_are_linearised():
+    """A lag whose slopes vanish around a delay cost nothing for its parameters by these."""
+    vehicle = load_vehicle('hummingbird')
+    record = fly_closed_loop(vehicle, {'actuation_delay': {'delay': 0.02}}, 'lissajous',
+                             duration=12.0, seed=1, noise=SENSORS['mocap_imu'])
+    flights = [flight_of(track_of(record, vehicle))]
+    causes = candidates(flights, vehicle, RULES, ['actuation_delay', 'motor_lag'])
+    delay, lag = ((next(one for one in causes if one.form == form),)
+                  for form in ('pure_delay', 'second_order'))
+    search = _Search(flights, vehicle, causes, RULES)
+    search.look_among(causes, lambda share: None)
+    apart = []
+    for chosen in (delay, lag):
+        search.stand_at(chosen)
+        apart.append(search.judge_around(delay).evidence - search.judge_around(lag).evidence)
+        assert search.simplest([delay, lag]).chosen == delay
+    assert apart[0] == pytest.approx(apart[1], abs=0.1)
 
 
 def test_from_a_delay_that_does_the_work_of_a_lag_the_lag_is_found():
