@@ -394,8 +394,11 @@ class _Search:
                 moved = start[list(cause.columns)]
                 if np.any((moved < lower) | (moved > upper)):
                     continue    # outside its bounds: states that are stamped early are no delay
+                # No step would take it out of them: only their prior tells one from the other.
+                apart = fit.nuisances.values.copy()
+                apart[:, places] -= values.mean(axis=0)
                 whole = key_of((laws[0], *self.best.chosen))
-                self.fit(whole, start, fit.nuisances, fit.starts)
+                self.fit(whole, start, replace(fit.nuisances, values=apart), fit.starts)
                 self.best = self.judge(whole)
 
     def alike_in_nuisances(self) -> tuple[str, ...]:

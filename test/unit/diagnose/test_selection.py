@@ -162,7 +162,7 @@ def test_an_effect_beside_the_simplest_of_sets_that_are_alike_is_as_rare_as_befo
 
 
 def shared_by_flights(vehicle, nuisance, effect, offsets):
-    """Return the (set, start) that are fitted where three flights have offsets of a nuisance."""
+    """Return the (set, start, nuisances) that are fitted where flights have some offsets."""
     record = fly_closed_loop(vehicle, {}, 'hover', duration=5.0, seed=0)
     [own] = [one for one in nuisance_candidates(vehicle, 3 * [track_of(record, vehicle)])
              if one.nuisance.name == nuisance]
@@ -172,7 +172,8 @@ def shared_by_flights(vehicle, nuisance, effect, offsets):
         z=nominal(vehicle), nuisances=values, starts=[]))
     search = SimpleNamespace(all_causes=candidates([], vehicle, RULES, [effect]),
                              vehicle=vehicle, rules=RULES, best=best, judge=lambda chosen: best,
-                             fit=lambda chosen, start, *_: fits.append((chosen, start)))
+                             fit=lambda chosen, start, apart, _: fits.append(
+                                 (chosen, start, apart)))
     _Search.share_alike(search)
     return fits
 
@@ -180,8 +181,13 @@ def shared_by_flights(vehicle, nuisance, effect, offsets):
 def test_what_flights_have_alike_is_an_effect_by_the_law_whose_parameter_it_is():
     """A vehicle file may have the thrust by another law, which is then the usual one."""
     vehicle = replace(load_vehicle('hummingbird'), effects={'thrust_scale': {'exponent': 1.9}})
-    [(chosen, start)] = shared_by_flights(vehicle, 'thrust_scale_by_flight', 'thrust_scale',
-                                          (-0.09, -0.1, -0.11))
+    offsets = np.array([-0.09, -0.1, -0.11])
+    [(chosen, start, apart)] = shared_by_flights(vehicle, 'thrust_scale_by_flight',
+                                                 'thrust_scale', offsets)
+    # Each flight is predicted as before: nothing is in the effect and in the nuisance, too.
+    there = np.array([vector - nominal(vehicle) for vector in apart.vectors(start)])
+    assert there[:, INDEX['thrust_scale.factor']] == pytest.approx(offsets)
+    assert apart.values.mean() == pytest.approx(0.0, abs=1e-12)
     free = {column for cause in chosen if cause.nuisance is None for column in cause.columns}
     assert set(np.flatnonzero(start != nominal(vehicle))) == free == {INDEX['thrust_scale.factor']}
 
@@ -193,7 +199,7 @@ def test_what_flights_have_alike_is_an_effect_by_the_law_whose_parameter_it_is()
 def test_clocks_that_all_flights_have_late_are_a_delay(offsets, joins):
     fits = shared_by_flights(load_vehicle('hummingbird'), CLOCK, 'actuation_delay', offsets)
     assert bool(fits) is joins
-    for chosen, start in fits:
+    for chosen, start, _ in fits:
         assert start[INDEX['actuation_delay.delay']] == pytest.approx(np.mean(offsets))
         assert {cause.effect for cause in chosen} == {CLOCK, 'actuation_delay'}
 
