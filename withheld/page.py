@@ -1,15 +1,23 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""docs/withheld.md with the latest run and the trend; older runs are in files beside it."""
+"""
+docs/withheld.md with the latest run, the trend and the last runs together.
+
+Older runs are in files beside it.
+"""
 
 import datetime
 from pathlib import Path
 import re
 
-from withheld.table import markdown
+from withheld.goals import CALIBRATION, LIMITS, met, target
+from withheld.score import BINS, TITLES
+from withheld.table import markdown, MET
 
 LATEST = '\n## Latest run\n'
-BEGIN, END = '<!-- trend -->\n', '<!-- end of trend -->'
+TREND = '<!-- trend -->\n', '<!-- end of trend -->'
+TOGETHER = '<!-- together -->\n', '<!-- end of together -->'
+LAST = 5        # runs that are counted together
 
 # Goals and columns of the trend, by the names that the table of goals has, and their titles.
 SHOWN = {
@@ -40,7 +48,7 @@ def keep(document: Path, result: dict, day: datetime.date) -> None:
     head = (f'### {day}, version {result["version"]}: {result["count"]} cases, '
             f'seed {result["seed"]}')
     document.write_text(f'{page}{LATEST}\n{head}\n\n{markdown(result)}\n', encoding='utf-8')
-    document.write_text(with_trend(document), encoding='utf-8')
+    document.write_text(with_tables(document), encoding='utf-8')
 
 
 def apart(run: str) -> str:
@@ -49,27 +57,114 @@ def apart(run: str) -> str:
     return re.sub(r'\]\((?!https?:|#)', '](../', run) + '\n'
 
 
-def with_trend(document: Path) -> str:
-    """Return the text of the document with the trend of all runs that have a table of goals."""
+def with_tables(document: Path) -> str:
+    """Return the text of the document with the tables over several runs as its pages give them."""
     text = document.read_text(encoding='utf-8')
     runs = {f'{document.stem}/{path.name}': path.read_text(encoding='utf-8')
             for path in sorted(document.with_suffix('').glob('run_*.md'))}
-    rows = [row for link, run in (runs | {'#latest-run': text.partition(LATEST)[2]}).items()
-            if (row := trend_row(link, run))]
+    runs['#latest-run'] = text.partition(LATEST)[2]
+    text = _between(*TREND, text, trend(runs))
+    return _between(*TOGETHER, text, together(list(runs.values())))
+
+
+def _between(begin: str, end: str, text: str, table: str) -> str:
+    """Return a text with a table in place of what is between two marks."""
+    before, _, rest = text.partition(begin)
+    return f'{before}{begin}\n{table}\n\n{end}{rest.partition(end)[2]}'
+
+
+def _lines(*rows: list[str]) -> str:
+    return '\n'.join(f'| {" | ".join(cells)} |' for cells in rows)
+
+
+def _table(run: str, first: str) -> list[list[str]]:
+    """Return the cells of the table whose head begins with `first`, [] where a run has none."""
+    found = re.search(rf'^\| {re.escape(first)} \|.*(\n\|.*)*', run, re.M)
+    return [[cell.strip() for cell in line.strip().strip('|').split('|')]
+            for line in found[0].splitlines()] if found else []
+
+
+def _figures(run: str) -> dict[tuple[str, str], str]:
+    """Return {(goal, column): what was reached} of a run, {} where it has no table of goals."""
+    return {(goal, column): figure for goal, column, figure, *_ in _table(run, 'goal')[2:]}
+
+
+def trend(runs: dict[str, str]) -> str:
+    """Return the table with a row for each run, of {link: text}, that has a table of goals."""
     head = ['version', 'date', 'cases', *SHOWN.values()]
     rule = ['---', '---', *['--:'] * (len(head) - 2)]
-    table = '\n'.join(f'| {" | ".join(cells)} |' for cells in (head, rule, *rows))
-    before, _, rest = text.partition(BEGIN)
-    return f'{before}{BEGIN}\n{table}\n\n{END}{rest.partition(END)[2]}'
+    rows = [row for link, run in runs.items() if (row := trend_row(link, run))]
+    return _lines(head, rule, *rows)
 
 
 def trend_row(link: str, run: str) -> list[str] | None:
     """Return the cells of a run in the trend, or None where it has no table of goals."""
-    reached = {(goal, column): figure for goal, column, figure in
-               re.findall(r'^\| ([^|]+) \| ([^|]+) \| ([^|]+) \|', run, re.M)}
+    reached = _figures(run)
     title = re.search(r'^#+ ([\d-]+), version ([\d.]+)(?: \((\w+)\))?: (\d+) cases', run, re.M)
     if title is None or not any(key in reached for key in SHOWN):
         return None
     day, version, commit, count = title.groups()
     return [f'[{commit or version}]({link})', day, count,
             *(reached.get(key, '-').replace('-', '–') for key in SHOWN)]
+
+
+def together(runs: list[str]) -> str:
+    """
+    Return the table of what the last runs reached together.
+
+    It has the goals whose cases can be counted over the pages of runs, and the calibration error.
+    Args: runs: texts, oldest first; those without a table of goals are passed over.
+    """
+    last = [run for run in runs if _figures(run)][-LAST:]
+    rows = []
+    for what, column in LIMITS:
+        title = TITLES[column]
+        if what == CALIBRATION:
+            reached, count = calibration(last, title)
+            figure = f'{reached:.3f} of {count}'
+        else:
+            reached, count = share([_figures(run).get((what, title), '') for run in last])
+            figure = f'{100 * reached:.1f}'.removesuffix('.0') + f' % of {count}'
+        if count:
+            rows.append([what, title, figure, target(what, column) or '-',
+                         MET[met(what, column, reached)]])
+    return _lines(['goal', 'column', 'together', 'target', ''],
+                  ['---', '---', '--:', '---', '---'], *rows)
+
+
+def share(figures: list[str]) -> tuple[float, int]:
+    """
+    Return (share, count) of figures such as '67 % of 3' together; those of another form are none.
+
+    The pages have rounded percentages. What they were counted from is the nearest whole number:
+    exactly up to 100 cases, to about one of 100 beyond.
+    """
+    parts = [(int(found[1]), int(found[2])) for figure in figures
+             if (found := re.fullmatch(r'(\d+) % of (\d+)', figure))]
+    count = sum(cases for _, cases in parts)
+    return sum(round(percent * cases / 100) for percent, cases in parts) / max(count, 1), count
+
+
+def calibration(runs: list[str], title: str) -> tuple[float, int]:
+    """
+    Return (calibration error, count) of the middle of a column over several runs.
+
+    It comes from their reliability tables. In each bin the means of what was given and of what was
+    present are those over all runs; the error is the mean difference between the two, each bin
+    weighted by its count.
+    """
+    apart: dict[str, float] = {}    # by bin: sum of given - present
+    total = 0
+    for run in runs:
+        head, *rows = _table(run, 'probability: mean given / present (count)') or [[]]
+        if title not in head:
+            continue
+        for cells in rows:
+            ends = re.fullmatch(r'([\d.]+) to ([\d.]+)', cells[0])
+            found = re.fullmatch(r'([\d.]+) / ([\d.]+) \((\d+)\)', cells[head.index(title)])
+            if ends and found and BINS[1] <= float(ends[1]) and float(ends[2]) <= BINS[-2]:
+                count = int(found[3])
+                apart[cells[0]] = (apart.get(cells[0], 0.0)
+                                   + count * (float(found[1]) - float(found[2])))
+                total += count
+    return sum(abs(one) for one in apart.values()) / max(total, 1), total

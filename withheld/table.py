@@ -6,6 +6,7 @@ from withheld.goals import goals
 from withheld.score import BINS, TITLES
 
 STRENGTHS = ('0.3', '1', '3', '10')
+MET = {True: 'met', False: '**missed**', None: '-'}
 
 
 def percent(part):
@@ -30,9 +31,8 @@ def markdown(found):
 def _goals(found):
     """Return the table of goals, and below it each that was missed with its cases."""
     rows = goals(found)
-    met = {True: 'met', False: '**missed**', None: '-'}
     table = _rows(('goal', 'column', 'reached', 'target', ''),
-                  [(row.what, TITLES[row.column], row.figure, row.target or '-', met[row.met])
+                  [(row.what, TITLES[row.column], row.figure, row.target or '-', MET[row.met])
                    for row in rows])
     lines = []
     for row in rows:

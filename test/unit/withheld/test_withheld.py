@@ -622,7 +622,8 @@ def test_the_latest_run_is_on_the_page_and_older_ones_in_files(tmp_path):
 
     from withheld.page import keep
     page = tmp_path / 'withheld.md'
-    page.write_text('# Check\n\n<!-- trend -->\n<!-- end of trend -->\n', encoding='utf-8')
+    page.write_text('# Check\n\n<!-- trend -->\n<!-- end of trend -->\n'
+                    '<!-- together -->\n<!-- end of together -->\n', encoding='utf-8')
     result = scores.score({'a': label(['wind'])}, {'a': diagnosis('wind')})
     for day in (1, 2, 3):
         keep(page, result | {'version': f'0.1.0 (c{day})', 'seed': 7},
@@ -640,12 +641,6 @@ def test_the_latest_run_is_on_the_page_and_older_ones_in_files(tmp_path):
         [' [c2](withheld/run_02.md) ', ' 2026-01-02 ', ' 1 '],
         [' [c3](#latest-run) ', ' 2026-01-03 ', ' 1 ']]
     assert all(row.split('|')[4] == ' 100 % of 1 ' for row in rows)
-
-
-def test_the_trend_has_what_the_runs_reached():
-    from withheld.__main__ import DOCUMENT
-    from withheld.page import with_trend
-    assert with_trend(DOCUMENT) == DOCUMENT.read_text(encoding='utf-8')
 
 
 def test_the_help_says_why_no_cluster_is_used(capsys):
