@@ -59,24 +59,38 @@ def rate_walk(parts: Sequence[tuple[np.ndarray, float]], rules: Rules) -> np.nda
 
     The mean square change of an error over a lag is that of noise, flat beyond its memory, of
     independent moments, in proportion to the lag, and of slow ones, to its square. The slopes
-    between three lags tell these apart; 0 where what remains does not show.
+    between three lags tell these apart; 0 where what remains does not show. Where it is less than
+    none, noise swings between the samples and is remembered for longer: the lags are twice as long
+    then.
     Args: parts: residuals (B, count + 1, 3) of the rate and the period s of each flight.
+    """
+    near, far = (_slopes(parts, rules, times) for times in (1, 2))
+    swings = near[0][1] < -rules.hidden * near[1][1]
+    mean, error = (np.where(swings, later, one) for one, later in zip(near, far, strict=True))
+    least = np.argmin(mean, axis=0)[None]
+    value, spread = (np.take_along_axis(table, least, axis=0)[0] for table in (mean, error))
+    return np.where(value > rules.hidden * spread, value, 0.0)
+
+
+def _slopes(parts: Sequence[tuple[np.ndarray, float]], rules: Rules, times: int
+            ) -> tuple[np.ndarray, np.ndarray]:
+    """
+    Return slopes (2, 3) of the mean square change of an error, and their standard errors.
+
+    By rows between the later two of three lags, which are so many times those of the rules; and
+    without what grows with the square of the lag. 0 where rollouts are too short.
     """
     each = []
     for errors, period in parts:
-        near, mid, far = lags = _lags(period, rules)
+        near, mid, far = lags = _lags(period / times, rules)
         if far >= errors.shape[1]:
-            return np.zeros(errors.shape[-1])
+            return np.zeros((2, 3)), np.zeros((2, 3))
         change = [np.mean((errors[:, lag:] - errors[:, :-lag]) ** 2, axis=1) for lag in lags]
         early = (change[1] - change[0]) / ((mid - near) * period)
         late = (change[2] - change[1]) / ((far - mid) * period)
         each.append(np.stack([late, early - (late - early) * (mid + near) / (far - near)]))
     slopes = np.concatenate(each, axis=1)
-    mean = slopes.mean(axis=1)
-    error = slopes.std(axis=1) / np.sqrt(slopes.shape[1])
-    least = np.argmin(mean, axis=0)[None]
-    value, spread = (np.take_along_axis(table, least, axis=0)[0] for table in (mean, error))
-    return np.where(value > rules.hidden * spread, value, 0.0)
+    return slopes.mean(axis=1), slopes.std(axis=1) / np.sqrt(slopes.shape[1])
 
 
 def _lags(period: float, rules: Rules) -> tuple[int, ...]:

@@ -38,6 +38,17 @@ def test_filtered_noise_is_no_walk():
     assert np.all(rate_walk([(filtered, PERIOD)], RULES) == 0.0)
 
 
+@pytest.mark.parametrize(('size', 'growth'), [(4.0, 5e-3), (4.0, 1e-2), (6.0, 1e-2), (8.0, 2e-2)])
+def test_a_walk_shows_beside_a_swing_between_the_samples(size, growth):
+    """As that of a controller that is five times as fast as the log, at half the log's rate."""
+    noise = size * SIGMA * np.random.default_rng(5).standard_normal((ROLLOUTS, 2 * COUNT + 1, 3))
+    swing = lfilter([0.3], [1.0, 0.1, 0.64], noise, axis=1)[:, COUNT:]
+    steps = np.sqrt(growth * PERIOD) * np.random.default_rng(2).standard_normal(swing.shape)
+    found = rate_walk([(swing + np.cumsum(steps, axis=1), PERIOD)], RULES)
+    assert np.all((0.5 * growth < found) & (found < 1.25 * growth))
+    assert np.all(rate_walk([(swing, PERIOD)], RULES) < 0.1 * growth)
+
+
 @pytest.mark.parametrize('frequency', [0.0, 0.5, 1.0])
 def test_slow_moments_are_little_of_a_walk(frequency):
     """What an effect that is missing makes stays a gap: a tenth of it at most counts as noise."""
