@@ -26,5 +26,6 @@ NOISES = {
     EVALUATION: ('laplace', 'breathing', 'uneven')}
 STRANGERS = {
     DEVELOPMENT: ('periodic_force', 'tether', 'thrust_exponent', 'backlash', 'updraft', 'slosh',
-                  'ceiling', 'neighbours', 'compass', 'branches', 'leash', 'recoil'),
-    EVALUATION: ('wall', 'whirl', 'stutter', 'keel')}
+                  'ceiling', 'neighbours', 'compass', 'branches', 'leash', 'recoil',
+                  'keel'),
+    EVALUATION: ('wall', 'whirl', 'stutter', 'twisted')}

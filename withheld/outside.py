@@ -327,6 +327,25 @@ class Keel(Influence):
         return np.zeros(3), self.moment * np.array([-y, x, 0.0])
 
 
+class Twisted(Influence):
+    """
+    A frame that a crash has twisted: all rotors lean around it, and their thrust turns the body.
+
+    Each leans across its own arm, the same way around, so that nothing pushes the body aside. As
+    arms of tube turn in their clamps in practice.
+    """
+
+    def __init__(self, size, weight, radius, hover, rng):
+        """Draw which way around, and take the moment, N m, of the thrust in hover."""
+        self.moment = 0.01 * size * weight * radius * rng.choice([-1.0, 1.0])
+        self.hover = hover
+
+    def wrench(self, now):
+        """Return the moment, which is about the body's vertical."""
+        thrust = float(np.mean((now.speeds / self.hover) ** 2))
+        return np.zeros(3), np.array([0.0, 0.0, self.moment * thrust])
+
+
 # Each with what of the vehicle its size is measured by.
 KINDS = {'periodic_force': (Periodic, 'weight'), 'tether': (Tether, 'weight'),
          'updraft': (Updraft, 'weight'), 'thrust_exponent': (Exponent, 'hover'),
@@ -335,4 +354,5 @@ KINDS = {'periodic_force': (Periodic, 'weight'), 'tether': (Tether, 'weight'),
          'wall': (Wall, 'radius', 'weight'), 'whirl': (Whirl, 'weight'),
          'stutter': (Stutter, 'rotors'), 'compass': (Compass,),
          'branches': (Branches, 'weight', 'radius'), 'leash': (Leash, 'weight'),
-         'recoil': (Recoil, 'weight', 'radius'), 'keel': (Keel, 'weight', 'radius')}
+         'recoil': (Recoil, 'weight', 'radius'), 'keel': (Keel, 'weight', 'radius'),
+         'twisted': (Twisted, 'weight', 'radius', 'hover')}

@@ -180,12 +180,12 @@ def test_the_momentum_of_rotors_is_not_that_of_one_inertia(form):
 
 @pytest.mark.parametrize('form', EVALUATION['gyro_bias'])
 def test_a_bias_is_not_constant(form):
-    part, rest = made('gyro_bias', form), np.array([*np.zeros(3), 1.0, *np.zeros(3)])
+    part, rest = made('gyro_bias', form), np.zeros(3)
     thrusts = np.mean((FLIGHT['speeds'] / HOVER) ** 2, axis=1)
     bias = np.array([
-        part.measured(t, np.array([*place, *velocity, *rest]), thrust)[10:]
-        for t, place, velocity, thrust in zip(
-            FLIGHT['time'], WAY, FLIGHT['air'], thrusts, strict=True)])
+        part.measured(t, np.array([*place, *velocity, *attitude, *rest]), thrust)[10:]
+        for t, place, velocity, attitude, thrust in zip(
+            FLIGHT['time'], WAY, FLIGHT['air'], LEANS.as_quat(), thrusts, strict=True)])
     assert np.linalg.norm(bias.std(axis=0)) > LEAST * np.linalg.norm(bias.mean(axis=0))
 
 

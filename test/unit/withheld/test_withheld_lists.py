@@ -231,3 +231,11 @@ def test_a_keel_turns_a_vehicle_upright_and_pushes_it_nowhere():
         force, moment = keel.wrench(SimpleNamespace(rotation=turned.as_matrix()))
         assert moment == pytest.approx(-keel.moment * np.sin(0.3) * np.eye(3)[axis])
         assert not np.any(force)
+
+
+def test_a_twisted_frame_turns_the_body_with_its_thrust_and_pushes_it_nowhere():
+    twisted = outside.Twisted(1.0, 5.0, 0.1, 400.0, np.random.default_rng(1))
+    for turn in (1.0, 1.2):
+        force, moment = twisted.wrench(SimpleNamespace(speeds=np.full(4, 400.0 * turn)))
+        assert moment == pytest.approx([0.0, 0.0, twisted.moment * turn ** 2])
+        assert not np.any(force)
