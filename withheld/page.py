@@ -7,6 +7,7 @@ Older runs are in files beside it.
 """
 
 import datetime
+from itertools import pairwise
 from pathlib import Path
 import re
 
@@ -110,9 +111,10 @@ def trend_row(link: str, run: str) -> list[str] | None:
 
 def together(runs: list[str]) -> str:
     """
-    Return the table of what the last runs reached together.
+    Return the tables of what the last runs reached together.
 
-    It has the goals whose cases can be counted over the pages of runs, and the calibration error.
+    The first has the goals whose cases can be counted over the pages of runs, and the calibration
+    error; the second has the probabilities.
     Args: runs: texts, oldest first; those without a table of goals are passed over.
     """
     last = [run for run in runs if _figures(run)][-LAST:]
@@ -128,8 +130,24 @@ def together(runs: list[str]) -> str:
         if count:
             rows.append([what, title, figure, target(what, column) or '-',
                          MET[met(what, column, reached)]])
-    return _lines(['goal', 'column', 'together', 'target', ''],
-                  ['---', '---', '--:', '---', '---'], *rows)
+    goals = _lines(['goal', 'column', 'together', 'target', ''],
+                   ['---', '---', '--:', '---', '---'], *rows)
+    return '\n\n'.join(filter(None, (goals, _probabilities(last))))
+
+
+def _probabilities(runs: list[str]) -> str:
+    """Return the table of the mean probability given, and the share present; or nothing."""
+    columns = {title: reliability(runs, title) for title in TITLES.values()}
+    columns = {title: found for title, found in columns.items() if found}
+    if not columns:
+        return ''
+    bins = [f'{low:g} to {high:g}' for low, high in pairwise(BINS)]
+    rows = [[name, *(f'{given / count:.3f} / {present / count:.3f} ({count})' if count else '-'
+                     for given, present, count in
+                     (found.get(name, (0.0, 0.0, 0)) for found in columns.values()))]
+            for name in bins]
+    return _lines(['probability: mean given / present (count)', *columns],
+                  ['---'] * (1 + len(columns)), *rows)
 
 
 def share(figures: list[str]) -> tuple[float, int]:
@@ -149,22 +167,29 @@ def calibration(runs: list[str], title: str) -> tuple[float, int]:
     """
     Return (calibration error, count) of the middle of a column over several runs.
 
-    It comes from their reliability tables. In each bin the means of what was given and of what was
-    present are those over all runs; the error is the mean difference between the two, each bin
-    weighted by its count.
+    In each bin the means of what was given and of what was present are those over all runs; the
+    error is the mean difference between the two, each bin weighted by its count.
     """
-    apart: dict[str, float] = {}    # by bin: sum of given - present
-    total = 0
+    found = reliability(runs, title)
+    middle = [found[name] for name in found
+              if BINS[1] <= float(name.split()[0]) and float(name.split()[-1]) <= BINS[-2]]
+    total = sum(count for *_, count in middle)
+    return sum(abs(given - present) for given, present, _ in middle) / max(total, 1), total
+
+
+def reliability(runs: list[str], title: str) -> dict[str, tuple[float, float, int]]:
+    """Return {bin: (sum given, number present, count)} of a column over several runs' tables."""
+    sums: dict[str, tuple[float, float, int]] = {}
     for run in runs:
         head, *rows = _table(run, 'probability: mean given / present (count)') or [[]]
         if title not in head:
             continue
         for cells in rows:
-            ends = re.fullmatch(r'([\d.]+) to ([\d.]+)', cells[0])
+            ends = re.fullmatch(r'[\d.]+ to [\d.]+', cells[0])
             found = re.fullmatch(r'([\d.]+) / ([\d.]+) \((\d+)\)', cells[head.index(title)])
-            if ends and found and BINS[1] <= float(ends[1]) and float(ends[2]) <= BINS[-2]:
+            if ends and found:
                 count = int(found[3])
-                apart[cells[0]] = (apart.get(cells[0], 0.0)
-                                   + count * (float(found[1]) - float(found[2])))
-                total += count
-    return sum(abs(one) for one in apart.values()) / max(total, 1), total
+                given, present, before = sums.get(cells[0], (0.0, 0.0, 0))
+                sums[cells[0]] = (given + count * float(found[1]),
+                                  present + count * float(found[2]), before + count)
+    return sums

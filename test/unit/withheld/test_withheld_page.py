@@ -25,8 +25,9 @@ def page(*reached, bins=()):
 
 
 def rows_of(table):
-    """Return {(goal, column): (together, target, met)} of the table."""
-    cells = [[cell.strip() for cell in line.split('|')[1:-1]] for line in table.splitlines()[2:]]
+    """Return {(goal, column): (together, target, met)} of the first table."""
+    first = table.partition('\n\n')[0]
+    cells = [[cell.strip() for cell in line.split('|')[1:-1]] for line in first.splitlines()[2:]]
     return {(what, column): tuple(rest) for what, column, *rest in cells}
 
 
@@ -116,6 +117,10 @@ def test_probabilities_are_held_against_what_is_there_in_each_bin_of_all_runs():
     assert rows_of(together(runs)) == {
         (MIDDLE, 'forms as ours'): ('0.040 of 50', '≤ 0.1', 'met'),
         (MIDDLE, 'logs'): ('0.400 of 2', '≤ 0.15', '**missed**')}
+    probabilities = together(runs).partition('\n\n')[2].splitlines()
+    assert probabilities[0] == '| probability: mean given / present (count) | forms as ours | logs |'
+    assert probabilities[3] == '| 0.05 to 0.2 | 0.175 / 0.125 (40) | - |'
+    assert probabilities[-1] == '| 0.95 to 1 | 0.990 / 0.100 (1000) | - |'
 
 
 def test_a_run_alone_has_the_calibration_error_of_its_page():
