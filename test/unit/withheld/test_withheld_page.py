@@ -118,7 +118,8 @@ def test_probabilities_are_held_against_what_is_there_in_each_bin_of_all_runs():
         (MIDDLE, 'forms as ours'): ('0.040 of 50', '≤ 0.1', 'met'),
         (MIDDLE, 'logs'): ('0.400 of 2', '≤ 0.15', '**missed**')}
     probabilities = together(runs).partition('\n\n')[2].splitlines()
-    assert probabilities[0] == '| probability: mean given / present (count) | forms as ours | logs |'
+    head = '| probability: mean given / present (count) | forms as ours | logs |'
+    assert probabilities[0] == head
     assert probabilities[3] == '| 0.05 to 0.2 | 0.175 / 0.125 (40) | - |'
     assert probabilities[-1] == '| 0.95 to 1 | 0.990 / 0.100 (1000) | - |'
 
