@@ -7,7 +7,9 @@ import sys
 
 LIBRARY = ctypes.CDLL(None) if sys.platform == 'linux' else None
 MAPPED, LARGE = -3, 8 * 2 ** 20     # M_MMAP_THRESHOLD of malloc.h, and bytes of an array
-TRIMMED, KEPT = -1, 64 * 2 ** 20    # M_TRIM_THRESHOLD, and bytes for the arrays that come next
+# M_TRIM_THRESHOLD, and bytes that a process keeps for the arrays that come next: as many as the C
+# library comes to by itself where no threshold is set (mallopt(3): twice its largest, of 32 MB).
+TRIMMED, KEPT = -1, 64 * 2 ** 20
 
 
 def give_back() -> None:

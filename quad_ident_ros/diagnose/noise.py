@@ -60,8 +60,8 @@ def rate_walk(parts: Sequence[tuple[np.ndarray, float]], rules: Rules) -> np.nda
     The mean square change of an error over a lag is that of noise, flat beyond its memory, of
     independent moments, in proportion to the lag, and of slow ones, to its square. The slopes
     between three lags tell these apart; 0 where what remains does not show. Where it is less than
-    none, noise swings between the samples and is remembered for longer: the lags are twice as long
-    then.
+    none, by more than a standard error, noise swings between the samples and is remembered for
+    longer: the lags are twice as long then.
     Args: parts: residuals (B, count + 1, 3) of the rate and the period s of each flight.
     """
     near, far = (_slopes(parts, rules, times) for times in (1, 2))
@@ -82,7 +82,7 @@ def _slopes(parts: Sequence[tuple[np.ndarray, float]], rules: Rules, times: int
     """
     each = []
     for errors, period in parts:
-        near, mid, far = lags = _lags(period / times, rules)
+        near, mid, far = lags = [times * lag for lag in _lags(period, rules)]
         if far >= errors.shape[1]:
             return np.zeros((2, 3)), np.zeros((2, 3))
         change = [np.mean((errors[:, lag:] - errors[:, :-lag]) ** 2, axis=1) for lag in lags]
@@ -90,7 +90,9 @@ def _slopes(parts: Sequence[tuple[np.ndarray, float]], rules: Rules, times: int
         late = (change[2] - change[1]) / ((far - mid) * period)
         each.append(np.stack([late, early - (late - early) * (mid + near) / (far - near)]))
     slopes = np.concatenate(each, axis=1)
-    return slopes.mean(axis=1), slopes.std(axis=1) / np.sqrt(slopes.shape[1])
+    count = slopes.shape[1]
+    return slopes.mean(axis=1), slopes.std(axis=1, ddof=1) / np.sqrt(count) if count > 1 else (
+        np.full((2, 3), np.inf))
 
 
 def _lags(period: float, rules: Rules) -> tuple[int, ...]:

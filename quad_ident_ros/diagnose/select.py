@@ -49,8 +49,10 @@ from quad_ident_ros.model.vehicle import Vehicle
 # How long and how far the search goes; the thresholds of a verdict are those of Rules.
 ROUNDS = 6
 KEPT = 10           # fitted sets that are judged again around each new best one
-FAR = 30.0          # log evidence behind the best one up to which a set that has other delays or
-                    # lags is judged around itself: slopes around others were wrong by up to 14
+FAR = 31.0          # log evidence behind the best one up to which a set that has other delays or
+                    # lags is judged around itself. Slopes around a delay of 13 ms were wrong by 14
+                    # for a lag of the second order, and the other way round; and `alike`
+TURNS = 2           # times that flights are linearised again for delays and lags of the best set
 PASSES = 3          # times, at most, in each stage, that the noise is estimated again
 ONCE = 0.8          # share of the progress for the first search: a second one is rare
 LOST = 4.0          # times the scatter that a fit may cost more than a subset does
@@ -127,7 +129,7 @@ class _Search:
         self.tried = {(): self.nothing(self.noise)}
         self.best, self.judged, self.ranked = None, {}, []
         self.stood: tuple = ()
-        self.around: set[tuple] = set()
+        self.around: dict[tuple, Fitted] = {}
 
     def nothing(self, noise: list[np.ndarray]) -> Estimate:
         """Return the Estimate of the empty set."""
@@ -158,7 +160,7 @@ class _Search:
         plain = self.simplest([key for key in self.tried if _plain(key)])
         known = [self.best.chosen, *(one.chosen for one in self.order()[:REFITS]), plain.chosen,
                  ()]
-        self.noise, self.judged = noise, {}
+        self.noise, self.judged, self.around = noise, {}, {}
         self.tried = {key: self.tried[key] for key in dict.fromkeys(known)}
         self.tried = {key: refitted(self.flights, self.vehicle, fit.z, key, noise, fit.nuisances,
                                     fit.starts, self.frame.slopes, slow=slow)
@@ -226,7 +228,7 @@ class _Search:
         vars(self).pop('frame', None)   # two at once would be most of a diagnosis' memory
         give_back()
         self.frame = frame_at(self.flights, self.vehicle, fit, layout.wanted, self.rules)
-        self.stood, self.around = chosen, set()
+        self.stood, self.around = chosen, {}
         grids = size_grids(self.vehicle, self.noise, self.rules)
         before = [one.chosen for one in self.order()[:KEPT]]
         known, self.grids = self.judged.get(chosen), grids
@@ -237,7 +239,7 @@ class _Search:
             self.quadratic = self.quadratic_of(fit, chosen, self.frame, self.columns, everyone,
                                                self.judge(chosen).sizes)
             self.judged = {}
-        for key in before:
+        for key in (chosen, *before):
             self.judge(key)
 
     def quadratic_of(self, fit: Estimate, chosen: tuple, frame: Frame, columns: list[int],
@@ -274,15 +276,18 @@ class _Search:
         if chosen not in self.around:
             fit, sizes = self.tried[chosen], self.judge(chosen).sizes
             layout = Layout(fit.columns, fit.nuisances.columns, len(self.flights))
+            # Beside the frame of all candidates one of a few columns, a fraction of its size.
             frame = frame_at(self.flights, self.vehicle, fit, layout.wanted, self.rules,
                              self.frame.scale)
             quadratic = replace(self.quadratic_of(fit, chosen, frame, fit.columns, fit.nuisances,
                                                   sizes), scatter=self.quadratic.scatter)
             rows = _rows(effects_in(chosen), nuisances_in(chosen), fit.columns,
                          len(self.flights))
-            self.judged[chosen] = fitted_of(chosen, fit, self.vehicle, frame, quadratic, rows,
+            self.around[chosen] = fitted_of(chosen, fit, self.vehicle, frame, quadratic, rows,
                                             self.grids, self.rules, sizes)
-            self.around.add(chosen)
+            del frame
+            give_back()
+        self.judged[chosen] = self.around[chosen]
         return self.judged[chosen]
 
     def order(self) -> list[Fitted]:
@@ -322,9 +327,15 @@ class _Search:
             again = refitted(self.flights, self.vehicle, near.z, chosen, self.noise,
                              near.nuisances, near.starts, slopes, scatter, slow=self.slow)
             fit = min(fit, again, key=lambda one: one.cost)
-        self.tried[chosen] = fit
+        self.put(chosen, fit)
         give_back()
         self.judge(chosen)
+
+    def put(self, chosen: tuple, fit: Estimate) -> None:
+        """Take the Estimate of a set in place of an earlier one, which its judgements are of."""
+        self.tried[chosen] = fit
+        self.judged.pop(chosen, None)
+        self.around.pop(chosen, None)
 
     def simplest(self, keys: Sequence[tuple]) -> Fitted:
         """Return the simplest of those sets that are about as good as the best of them."""
@@ -346,7 +357,7 @@ class _Search:
         chosen, fit = within_bounds(best.chosen, best.estimate, usual_forms(self.all_causes),
                                     self.flights, self.vehicle, self.noise, self.rules,
                                     self.quadratic.scatter, slow=self.slow)
-        self.tried[chosen] = fit
+        self.put(chosen, fit)
         self.judge(chosen)
         self.tried = {key: one for key, one in self.tried.items() if not any(
             out_of_bounds(cause, one, self.vehicle, self.rules) for cause in effects_in(key))}
@@ -362,10 +373,15 @@ class _Search:
             self.judged = {key: one for key, one in self.judged.items() if keeps(key)}
             self.ranked = [one for one in self.ranked if keeps is not _plain or _plain(one[1])]
             self.best = plain if keeps is _plain else told
+        for _ in range(TURNS):
+            if _actuators(self.best.chosen) == _actuators(self.stood):
+                break
+            self.stand_at(self.best.chosen)
+            self.best = self.simplest(list(self.judged))
         self.share_alike()
         if _actuators(self.best.chosen) != _actuators(self.stood):
             self.stand_at(self.best.chosen)
-            self.best = self.simplest(list(self.judged))
+            self.best = self.judge(self.best.chosen)
 
     def share_alike(self) -> None:
         """
@@ -374,8 +390,8 @@ class _Search:
         What is alike in all flights is the vehicle's, and must not hide in nuisances.
         """
         assert self.best is not None
-        chosen, fit = self.best.chosen, self.best.estimate
-        for cause in chosen:
+        for cause in self.best.chosen:
+            fit = self.best.estimate
             name = cause.nuisance.shared if cause.nuisance else ''
             # The law of a vehicle file may be another than that whose parameters these are.
             laws = [one for one in self.all_causes

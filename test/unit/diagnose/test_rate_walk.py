@@ -40,7 +40,7 @@ def test_filtered_noise_is_no_walk():
 
 @pytest.mark.parametrize(('size', 'growth'), [(4.0, 5e-3), (4.0, 1e-2), (6.0, 1e-2), (8.0, 2e-2)])
 def test_a_walk_shows_beside_a_swing_between_the_samples(size, growth):
-    """As that of a controller that is five times as fast as the log, at half the log's rate."""
+    """As that of a control loop which is faster than the log, here at a quarter of its rate."""
     noise = size * SIGMA * np.random.default_rng(5).standard_normal((ROLLOUTS, 2 * COUNT + 1, 3))
     swing = lfilter([0.3], [1.0, 0.1, 0.64], noise, axis=1)[:, COUNT:]
     steps = np.sqrt(growth * PERIOD) * np.random.default_rng(2).standard_normal(swing.shape)
@@ -60,5 +60,20 @@ def test_slow_moments_are_little_of_a_walk(frequency):
     assert np.all(rate_walk([(error + white(), PERIOD)], RULES) * t[-1] < 0.1 * made)
 
 
+def test_lags_are_as_much_longer_in_a_slow_log():
+    """At 20 Hz they are 1, 2 and 3 samples, or else 2, 4 and 6."""
+    growth, period = 3e-2, 0.05
+    noise = 6.0 * SIGMA * np.random.default_rng(5).standard_normal((ROLLOUTS, 40, 3))
+    swing = lfilter([0.3], [1.0, 0.8, 0.16], noise, axis=1)[:, 29:]
+    steps = np.sqrt(growth * period) * np.random.default_rng(2).standard_normal(swing.shape)
+    found = rate_walk([(swing + np.cumsum(steps, axis=1), period)], RULES)
+    assert np.all((0.5 * growth < found) & (found < 1.5 * growth))
+
+
 def test_rollouts_that_are_too_short_tell_nothing():
     assert np.all(rate_walk([(white()[:, :5], PERIOD)], RULES) == 0.0)
+
+
+def test_a_single_rollout_tells_nothing():
+    walk = np.cumsum(white()[:1], axis=1)
+    assert np.all(rate_walk([(walk, PERIOD)], RULES) == 0.0)

@@ -10,6 +10,7 @@ import pytest
 
 from quad_ident_ros.diagnose import select as selecting
 from quad_ident_ros.diagnose.candidates import Candidate, candidates, nuisance_candidates
+from quad_ident_ros.diagnose.evidence import key_of
 from quad_ident_ros.diagnose.fitted import Fitted, refitted
 from quad_ident_ros.diagnose.promising import other_actuators
 from quad_ident_ros.diagnose.rules import RULES
@@ -78,7 +79,7 @@ def searched(costs, evidence):
     search.all_causes = tuple(dict.fromkeys(cause for key in costs for cause in key))
     search.rules, search.ranked, search.judged = RULES, [], {}
     search.flights = search.vehicle = search.noise = search.slow = None
-    search.stood = ()
+    search.stood, search.around = (), {}
     search.quadratic = SimpleNamespace(scatter=1.0)
     search.tried = {key: SimpleNamespace(cost=cost) for key, cost in costs.items()}
 
@@ -221,6 +222,58 @@ def test_delays_and_lags_are_judged_alike_wherever_flights_are_linearised():
         apart.append(search.judge_around(delay).evidence - search.judge_around(lag).evidence)
         assert search.simplest([delay, lag]).chosen == delay
     assert apart[0] == pytest.approx(apart[1], abs=0.1)
+
+
+def search_among(records, vehicle, effects, nuisances):
+    """Return the search among some effects and nuisances of flights, as it begins."""
+    flights = [flight_of(track_of(record, vehicle)) for record in records]
+    search = _Search(flights, vehicle, candidates(flights, vehicle, RULES, effects), RULES)
+    search.nuisances = tuple(one for one in search.nuisances if one.effect in nuisances)
+    return search
+
+
+@pytest.mark.parametrize('delays', [(0.017, 0.020, 0.023), (0.037, 0.037, 0.028)])
+def test_a_delay_that_all_flights_have_stays_where_they_are_linearised_again(delays):
+    """Their clocks alone are the simpler set, and as good."""
+    vehicle = load_vehicle('hummingbird')
+    records = [fly_closed_loop(vehicle, {'actuation_delay': {'delay': delay}}, 'lissajous',
+                               duration=8.0, seed=seed, noise=SENSORS['mocap_imu'])
+               for seed, delay in enumerate(delays)]
+    search = search_among(records, vehicle, ['actuation_delay'], [CLOCK])
+    best = selecting._searched(search, lambda share: None).best
+    assert [cause.effect for cause in best.causes] == ['actuation_delay']
+    assert best.estimate.z[INDEX['actuation_delay.delay']] == pytest.approx(
+        np.mean(delays), abs=0.002)
+    assert best.estimate.nuisances.values.sum() == pytest.approx(0.0, abs=0.004)
+    # The clocks of three flights might have this mean by chance.
+    [spread] = search.nuisances[0].nuisance.spreads
+    assert search.selection().joint.errors == pytest.approx([spread / np.sqrt(3.0)], rel=0.01)
+
+
+def test_all_that_flights_have_alike_leaves_their_nuisances():
+    vehicle = load_vehicle('hummingbird')
+    true = {'gyro_bias.x': 0.05, 'attitude_misalignment.roll': 0.02}
+    records = [fly_closed_loop(
+        vehicle, {'gyro_bias': {'x': 0.05}, 'attitude_misalignment': {'roll': 0.02}}, 'lissajous',
+        duration=8.0, seed=seed, noise=SENSORS['mocap_imu']) for seed in range(3)]
+    search = search_among(records, vehicle, ['gyro_bias', 'attitude_misalignment'],
+                          ['rate_bias', 'attitude_bias'])
+    search.look_among(search.all_causes, lambda share: None)
+    own = {one.effect: one for one in search.nuisances}
+    search.fit(key_of(tuple(own.values())), nominal(vehicle), NuisanceValues.of(
+        [one.nuisance for one in own.values()], 3), search.frame.slopes.starts)
+    search.best = search.judge(key_of(tuple(own.values())))
+    begun, fit = [], search.fit
+    search.fit = lambda chosen, z, nuisances, starts: (
+        begun.append((z, nuisances)), fit(chosen, z, nuisances, starts))
+    search.share_alike()
+    found = search.best.estimate
+    # Where the last fit begins and where it ends.
+    for z, nuisances in (begun[-1], (found.z, found.nuisances)):
+        for name, value in true.items():
+            assert z[INDEX[name]] == pytest.approx(value, rel=0.1)
+        means = nuisances.values.mean(axis=0) / nuisances.spreads
+        assert means == pytest.approx(np.zeros(len(means)), abs=0.1)
 
 
 def test_from_a_delay_that_does_the_work_of_a_lag_the_lag_is_found():
