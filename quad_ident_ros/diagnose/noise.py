@@ -64,9 +64,9 @@ def rate_walk(parts: Sequence[tuple[np.ndarray, float]], rules: Rules) -> np.nda
     longer: the lags are twice as long then.
     Args: parts: residuals (B, count + 1, 3) of the rate and the period s of each flight.
     """
-    near, far = (_slopes(parts, rules, times) for times in (1, 2))
-    swings = near[0][1] < -rules.hidden * near[1][1]
-    mean, error = (np.where(swings, later, one) for one, later in zip(near, far, strict=True))
+    usual, longer = (_slopes(parts, rules, times) for times in (1, 2))
+    swings = usual[0][1] < -rules.hidden * usual[1][1]
+    mean, error = (np.where(swings, *pair) for pair in zip(longer, usual, strict=True))
     least = np.argmin(mean, axis=0)[None]
     value, spread = (np.take_along_axis(table, least, axis=0)[0] for table in (mean, error))
     return np.where(value > rules.hidden * spread, value, 0.0)

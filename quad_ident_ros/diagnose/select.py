@@ -6,7 +6,6 @@ from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.linalg import block_diag
 
 from quad_ident_ros.diagnose.candidates import Candidate, nuisance_candidates, usual_forms
 from quad_ident_ros.diagnose.discrepancy import AXES, log_likelihood, scales
@@ -16,9 +15,7 @@ from quad_ident_ros.diagnose.fitted import (
     effects_in,
     Fitted,
     fitted_of,
-    nuisances_in,
     out_of_bounds,
-    prior_deviations,
     refitted,
     size_grids,
     within_bounds,
@@ -28,8 +25,8 @@ from quad_ident_ros.diagnose.frame import (
     form_errors_of,
     Frame,
     frame_at,
-    normal_at,
 )
+from quad_ident_ros.diagnose.linear_model import fitted_around, quadratic_at, rows_of
 from quad_ident_ros.diagnose.promising import other_actuators, promising, REFITS
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.diagnose.selection import posteriors, Selection
@@ -40,7 +37,6 @@ from quad_ident_ros.greybox.estimate import Estimate, estimate
 from quad_ident_ros.greybox.flights import Flight, inertial
 from quad_ident_ros.greybox.linear import errors_along
 from quad_ident_ros.greybox.noise import quick_noise, whole_noise
-from quad_ident_ros.greybox.normal import scatter_of
 from quad_ident_ros.greybox.nuisances import are_alike, Layout, NuisanceValues, trim_wrench
 from quad_ident_ros.greybox.parameters import limits, nominal
 from quad_ident_ros.memory import give_back
@@ -50,8 +46,8 @@ from quad_ident_ros.model.vehicle import Vehicle
 ROUNDS = 6
 KEPT = 10           # fitted sets that are judged again around each new best one
 FAR = 31.0          # log evidence behind the best one up to which a set that has other delays or
-                    # lags is judged around itself. Slopes around a delay of 13 ms were wrong by 14
-                    # for a lag of the second order, and the other way round; and `alike`
+                    # lags is judged around itself: three times what slopes around a delay of 20 ms
+                    # are wrong by for a lag (9: test_selection.py, -k linearised), and `alike`
 TURNS = 2           # times that flights are linearised again for delays and lags of the best set
 PASSES = 3          # times, at most, in each stage, that the noise is estimated again
 ONCE = 0.8          # share of the progress for the first search: a second one is rare
@@ -128,8 +124,8 @@ class _Search:
             self.noise = self.whole_noise(self.nothing(self.noise))
         self.tried = {(): self.nothing(self.noise)}
         self.best, self.judged, self.ranked = None, {}, []
-        self.stood: tuple = ()
-        self.around: dict[tuple, Fitted] = {}
+        self.linearised_at: tuple = ()
+        self.judged_around: dict[tuple, Fitted] = {}
 
     def nothing(self, noise: list[np.ndarray]) -> Estimate:
         """Return the Estimate of the empty set."""
@@ -160,7 +156,7 @@ class _Search:
         plain = self.simplest([key for key in self.tried if _plain(key)])
         known = [self.best.chosen, *(one.chosen for one in self.order()[:REFITS]), plain.chosen,
                  ()]
-        self.noise, self.judged, self.around = noise, {}, {}
+        self.noise, self.judged, self.judged_around = noise, {}, {}
         self.tried = {key: self.tried[key] for key in dict.fromkeys(known)}
         self.tried = {key: refitted(self.flights, self.vehicle, fit.z, key, noise, fit.nuisances,
                                     fit.starts, self.frame.slopes, slow=slow)
@@ -204,7 +200,7 @@ class _Search:
         self.columns = sorted({column for cause in (*causes, *self.all_causes)
                                if cause in causes or any(cause in key for key in self.tried)
                                for column in cause.columns})
-        self.rows = _rows(self.all_causes, self.nuisances, self.columns, len(self.flights))
+        self.rows = rows_of(self.all_causes, self.nuisances, self.columns, len(self.flights))
         best = self.best.chosen if self.best else ()
         for turn in range(ROUNDS):
             self.stand_at(best)
@@ -228,39 +224,24 @@ class _Search:
         vars(self).pop('frame', None)   # two at once would be most of a diagnosis' memory
         give_back()
         self.frame = frame_at(self.flights, self.vehicle, fit, layout.wanted, self.rules)
-        self.stood, self.around = chosen, {}
+        self.linearised_at, self.judged_around = chosen, {}
         grids = size_grids(self.vehicle, self.noise, self.rules)
         before = [one.chosen for one in self.order()[:KEPT]]
         known, self.grids = self.judged.get(chosen), grids
         sizes = known.sizes if known else (0, 0)
-        self.quadratic = self.quadratic_of(fit, chosen, self.frame, self.columns, everyone, sizes)
+        self.quadratic = self.quadratic_of(chosen, everyone, sizes)
         self.judged = {}
         if known is None:   # the size of the discrepancy shows around here
-            self.quadratic = self.quadratic_of(fit, chosen, self.frame, self.columns, everyone,
-                                               self.judge(chosen).sizes)
+            self.quadratic = self.quadratic_of(chosen, everyone, self.judge(chosen).sizes)
             self.judged = {}
         for key in (chosen, *before):
             self.judge(key)
 
-    def quadratic_of(self, fit: Estimate, chosen: tuple, frame: Frame, columns: list[int],
-                     nuisances: NuisanceValues, sizes: tuple) -> Quadratic:
-        """Return the Quadratic around an Estimate, in some columns and nuisances."""
-        layout = Layout(columns, nuisances.columns, len(self.flights))
-        distances = distances_of(chosen, fit, self.vehicle)
-        normal = normal_at(frame, fit, layout, distances,
-                           tuple(grid[k] for grid, k in zip(self.grids, sizes, strict=True)),
-                           form_errors_of(distances, self.rules))
-        lower, upper, _ = limits(self.vehicle)
-        wide = prior_deviations(self.vehicle, self.rules)[columns]
-        null = nominal(self.vehicle)[columns]
-        beyond = np.full(nuisances.values.size, np.inf)
-        # Without candidates there is nothing whose gradient could scatter.
-        scatter = float(np.median(scatter_of(normal)[:len(columns)])) if columns else 1.0
-        return Quadratic(normal.information, normal.gradient, normal.cost,
-                         np.append(fit.z[columns] - null, nuisances.values),
-                         block_diag(np.diag(wide ** -2.0), nuisances.precision),
-                         np.append(lower[columns] - null, -beyond),
-                         np.append(upper[columns] - null, beyond), scatter)
+    def quadratic_of(self, chosen: tuple, nuisances: NuisanceValues, sizes: tuple) -> Quadratic:
+        """Return the Quadratic around a fitted set, all candidates free."""
+        force, moment = (grid[k] for grid, k in zip(self.grids, sizes, strict=True))
+        return quadratic_at(self.frame, self.tried[chosen], chosen, self.columns, nuisances,
+                            (force, moment), self.vehicle, self.rules)
 
     def judge(self, chosen: tuple) -> Fitted:
         """Find the log evidence of a set that was fitted."""
@@ -273,21 +254,13 @@ class _Search:
 
     def judge_around(self, chosen: tuple) -> Fitted:
         """Find the log evidence of a set by slopes around itself, its errors weighed as others."""
-        if chosen not in self.around:
-            fit, sizes = self.tried[chosen], self.judge(chosen).sizes
-            layout = Layout(fit.columns, fit.nuisances.columns, len(self.flights))
-            # Beside the frame of all candidates one of a few columns, a fraction of its size.
-            frame = frame_at(self.flights, self.vehicle, fit, layout.wanted, self.rules,
-                             self.frame.scale)
-            quadratic = replace(self.quadratic_of(fit, chosen, frame, fit.columns, fit.nuisances,
-                                                  sizes), scatter=self.quadratic.scatter)
-            rows = _rows(effects_in(chosen), nuisances_in(chosen), fit.columns,
-                         len(self.flights))
-            self.around[chosen] = fitted_of(chosen, fit, self.vehicle, frame, quadratic, rows,
-                                            self.grids, self.rules, sizes)
-            del frame
+        if chosen not in self.judged_around:
+            # Beside the frame of all candidates it takes one of a few columns for a moment.
+            self.judged_around[chosen] = fitted_around(
+                self.judge(chosen), self.flights, self.vehicle, self.frame.scale,
+                self.quadratic.scatter, self.grids, self.rules)
             give_back()
-        self.judged[chosen] = self.around[chosen]
+        self.judged[chosen] = self.judged_around[chosen]
         return self.judged[chosen]
 
     def order(self) -> list[Fitted]:
@@ -327,22 +300,23 @@ class _Search:
             again = refitted(self.flights, self.vehicle, near.z, chosen, self.noise,
                              near.nuisances, near.starts, slopes, scatter, slow=self.slow)
             fit = min(fit, again, key=lambda one: one.cost)
-        self.put(chosen, fit)
+        self.take_fit(chosen, fit)
         give_back()
         self.judge(chosen)
 
-    def put(self, chosen: tuple, fit: Estimate) -> None:
+    def take_fit(self, chosen: tuple, fit: Estimate) -> None:
         """Take the Estimate of a set in place of an earlier one, which its judgements are of."""
         self.tried[chosen] = fit
         self.judged.pop(chosen, None)
-        self.around.pop(chosen, None)
+        self.judged_around.pop(chosen, None)
 
     def simplest(self, keys: Sequence[tuple]) -> Fitted:
         """Return the simplest of those sets that are about as good as the best of them."""
         sets = [self.judge(key) for key in keys]
         least = max(one.evidence for one in sets) - FAR
+        there = _actuators(self.linearised_at)
         sets = [self.judge_around(one.chosen) if one.evidence > least
-                and _actuators(one.chosen) != _actuators(self.stood) else one for one in sets]
+                and _actuators(one.chosen) != there else one for one in sets]
         least = max(one.evidence for one in sets) - self.rules.alike
         return min((one for one in sets if one.evidence > least),
                    key=lambda one: (len(one.chosen), -one.evidence))
@@ -357,7 +331,7 @@ class _Search:
         chosen, fit = within_bounds(best.chosen, best.estimate, usual_forms(self.all_causes),
                                     self.flights, self.vehicle, self.noise, self.rules,
                                     self.quadratic.scatter, slow=self.slow)
-        self.put(chosen, fit)
+        self.take_fit(chosen, fit)
         self.judge(chosen)
         self.tried = {key: one for key, one in self.tried.items() if not any(
             out_of_bounds(cause, one, self.vehicle, self.rules) for cause in effects_in(key))}
@@ -374,12 +348,12 @@ class _Search:
             self.ranked = [one for one in self.ranked if keeps is not _plain or _plain(one[1])]
             self.best = plain if keeps is _plain else told
         for _ in range(TURNS):
-            if _actuators(self.best.chosen) == _actuators(self.stood):
+            if _actuators(self.best.chosen) == _actuators(self.linearised_at):
                 break
             self.stand_at(self.best.chosen)
             self.best = self.simplest(list(self.judged))
         self.share_alike()
-        if _actuators(self.best.chosen) != _actuators(self.stood):
+        if _actuators(self.best.chosen) != _actuators(self.linearised_at):
             self.stand_at(self.best.chosen)
             self.best = self.judge(self.best.chosen)
 
@@ -464,17 +438,3 @@ def _actuators(chosen: tuple) -> set[Candidate]:
 def _names(fitted: Fitted) -> set[str]:
     """Return the effects of a set, in whichever form."""
     return {cause.effect for cause in fitted.causes}
-
-
-def _rows(causes: Sequence[Candidate], nuisances: Sequence[Candidate], columns: list[int],
-          count: int) -> dict[Candidate, list[int]]:
-    """Return {candidate: its rows of the quadratic}, in each flight of a nuisance."""
-    rows = {cause: [columns.index(column) for column in cause.columns] for cause in causes
-            if set(cause.columns) <= set(columns)}
-    order = [column for one in nuisances for column in one.columns]
-    first = 0
-    for one in nuisances:
-        rows[one] = [len(columns) + number * len(order) + first + k for number in range(count)
-                     for k in range(len(one.columns))]
-        first += len(one.columns)
-    return rows
