@@ -12,6 +12,7 @@ from quad_ident_ros.greybox.errors import difference, ERRORS, GROUPS, moved, slo
 from quad_ident_ros.greybox.flights import Flight
 from quad_ident_ros.greybox.parameters import constants_of, limits, SPLIT
 from quad_ident_ros.greybox.predictor import by_model, Predictor
+from quad_ident_ros.model.attitude import rotation_matrix
 from quad_ident_ros.model.dynamics import predict, rows_needed
 from quad_ident_ros.model.vehicle import Vehicle
 
@@ -178,13 +179,16 @@ def tangent_of(flight: Flight, vehicle: Vehicle, z: np.ndarray, starts: np.ndarr
     sets[np.arange(1, len(sets)), columns] += steps
     # A start elsewhere moves the whole rollout, exactly, unless the ground is felt.
     shifts = 3 if (z[SPLIT:][GROUND] == registry.NULL[GROUND]).all() else 2
-    turned = ERRORS - shifts
-    moves = np.diag(STATE_STEP)[shifts:]
+    # Nor does a start that is turned change anything else where the attitude is given.
+    turns = GROUPS['attitude'] if flight.guide is not None else slice(0, 0)
+    apart = [k for k in range(shifts, ERRORS) if k not in range(ERRORS)[turns]]
+    moves = np.diag(STATE_STEP)[apart]
     all_starts = np.concatenate([
         starts, moved(starts[None], moves[:, None]).reshape(-1, starts.shape[1]),
         np.tile(starts, (len(columns), 1))]).reshape(-1, *starts.shape)
-    factors = 1.0 / np.concatenate([STATE_STEP[shifts:], steps])
-    which = np.append(np.zeros(1 + turned, int), np.arange(1, len(sets)))
+    places = np.array([*apart, *range(ERRORS, ERRORS + len(columns))])
+    factors = 1.0 / np.concatenate([STATE_STEP[apart], steps])
+    which = np.append(np.zeros(1 + len(apart), int), np.arange(1, len(sets)))
     table = np.zeros((batch, ERRORS + len(columns) + 1, (flight.count + 1) * ERRORS), SLOPE)
     for axis in range(shifts):
         table[:, axis, axis::ERRORS] = 1.0
@@ -200,13 +204,27 @@ def tangent_of(flight: Flight, vehicle: Vehicle, z: np.ndarray, starts: np.ndarr
         if part.start == 0:
             base, out = out[0].copy(), out[1:]
         at = slice(max(part.start - 1, 0), part.stop - 1)
-        slopes(out, base, factors[at], table[:, shifts:-1][:, at])
+        slopes(out, base, factors[at], places[at], table)
+    if flight.guide is not None:
+        for axis, turned in zip(range(ERRORS)[turns], np.moveaxis(_turned_on(base), -1, 0),
+                                strict=True):
+            table[:, axis].reshape(batch, -1, ERRORS)[..., turns] = turned
     drift = table[:, -1].reshape(batch, flight.count + 1, ERRORS)
     t = flight.course.t[flight.first[:, None] + np.arange(flight.count + 1)]
     drift[:, 1:-1] = difference(base[:, 2:], base[:, :-2]) / (t[:, 2:] - t[:, :-2])[..., None]
     drift[:, 0], drift[:, -1] = drift[:, 1], drift[:, -2]
     drift[..., 9:] = 0.0
     return Tangent(table)
+
+
+def _turned_on(states: np.ndarray) -> np.ndarray:
+    """
+    Return what a turn of the first of states (B, M, 13) makes of all of them, (B, M, 3, 3).
+
+    In the frame of each, by a turn about each axis of the first: in the world it stays the same.
+    """
+    attitudes = rotation_matrix(states[..., 6:10])
+    return attitudes.transpose(0, 1, 3, 2) @ attitudes[:, :1]
 
 
 def _parts(which: np.ndarray, length: int) -> Iterator[slice]:
