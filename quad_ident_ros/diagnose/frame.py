@@ -116,7 +116,7 @@ def frame_at(flights: list, vehicle: Vehicle, fit: Estimate, wanted: list, rules
         weight = weights_of(residual, sigma, flight) / sigma
         initial = Tangent(tangent.table[:, :ERRORS + 1])
         scale.append(weight.reshape(len(raw), -1))
-        basis.append(linear_of(initial, raw, weight, False).basis)
+        basis.append(linear_of(initial, raw, weight, False, with_basis=True).basis)
         # What the air does is not modelled in inertial flights, and changes with the motion.
         span = flight.segment if inertial(flights) else rules.form_time
         number = (flight.course.t[flight.first] / span).astype(int)

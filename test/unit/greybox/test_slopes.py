@@ -37,7 +37,8 @@ def slopes(flight):
 
 def table(tangent):
     """Return the rows of a tangent that count."""
-    return tangent.weighed(np.ones((len(tangent.table), tangent.table.shape[-1])), True)
+    ones = np.ones((len(tangent.table), tangent.table.shape[-1]))
+    return tangent.weighed(ones, True, ones)[:, :-1]
 
 
 def missed(slopes, flight, move):
