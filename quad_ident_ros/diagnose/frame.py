@@ -121,7 +121,8 @@ def frame_at(flights: list, vehicle: Vehicle, fit: Estimate, wanted: list, rules
     basis, block = [], []
     for tangent, raw, weight, flight in zip(slopes.tangents, raws, scale, flights, strict=True):
         initial = Tangent(tangent.table[:, :ERRORS + 1])
-        basis.append(linear_of(initial, raw, weight.reshape(raw.shape), False).basis)
+        basis.append(linear_of(initial, raw, weight.reshape(raw.shape), False,
+                               with_basis=True).basis)
         # What the air does is not modelled in inertial flights, and changes with the motion.
         span = flight.segment if inertial(flights) else rules.form_time
         number = (flight.course.t[flight.first] / span).astype(int)

@@ -26,12 +26,13 @@ def difference(recorded: np.ndarray, predicted: np.ndarray) -> np.ndarray:
 
 
 @compiled(fused=True)
-def slopes(moved: np.ndarray, base: np.ndarray, factors: np.ndarray, out: np.ndarray) -> None:
+def slopes(moved: np.ndarray, base: np.ndarray, factors: np.ndarray, places: np.ndarray,
+           out: np.ndarray) -> None:
     """
-    Write what rollouts change by per step into out (B, K, M * 12).
+    Write what rollouts change by per step into out (B, R, M * 12).
 
     Args: moved (K, B, M, 13) states after a step; base (B, M, 13) before; factors (K,) one over
-    the steps.
+    the steps; places (K,) in out.
     """
     change = np.empty(ERRORS)
     for b in range(base.shape[0]):
@@ -39,7 +40,7 @@ def slopes(moved: np.ndarray, base: np.ndarray, factors: np.ndarray, out: np.nda
             for m in range(base.shape[1]):
                 _difference(moved[k, b, m], base[b, m], change)
                 for n in range(ERRORS):
-                    out[b, k, m * ERRORS + n] = change[n] * factors[k]
+                    out[b, places[k], m * ERRORS + n] = change[n] * factors[k]
 
 
 @compiled(fused=True)

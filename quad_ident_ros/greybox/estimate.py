@@ -155,7 +155,8 @@ def _descend(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, columns
                   for raw, sigma, flight in zip(raws, noise, flights, strict=True)]
         wrenches = [tangent.wrench for tangent in tangents]
         whites = _whitenings(wrenches, scales, slow)
-        linears = [linear_of(tangent, raw, scale, clock, white) for tangent, raw, scale, white
+        linears = [linear_of(tangent, raw, scale, clock, white, known is None)
+                   for tangent, raw, scale, white
                    in zip(tangents, raws, scales, whites, strict=True)]
         normal = normal_of(linears, flights, layout, clock)
         now = np.concatenate([z[columns], nuisances.values.ravel()])

@@ -3,7 +3,7 @@
 """Flights linearised in the parameters, with the initial states of all rollouts taken out."""
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from quad_ident_ros.greybox.errors import difference, ERRORS, GROUPS, moved, slo
 from quad_ident_ros.greybox.flights import Flight
 from quad_ident_ros.greybox.parameters import constants_of, limits, SPLIT
 from quad_ident_ros.greybox.predictor import by_model, Predictor
+from quad_ident_ros.model.attitude import rotation_matrix
 from quad_ident_ros.model.dynamics import predict, rows_needed
 from quad_ident_ros.model.vehicle import Vehicle
 
@@ -51,11 +52,18 @@ class Tangent:
         return replace(self, table=self.table[part],
                        wrench=None if self.wrench is None else self.wrench[part])
 
-    def weighed(self, scale: np.ndarray, clock: bool) -> np.ndarray:
-        """Return the rows that count times scale (B, M), without the last one if not clock."""
+    def weighed(self, scale: np.ndarray, clock: bool, error: np.ndarray) -> np.ndarray:
+        """
+        Return the rows that count, without the last one if not clock, and, last, the error.
+
+        (B, K + 1, M): times scale (B, M). Args: error (B, M).
+        """
         end = None if clock else -1
         table = self.table[:, :end] if self.kept is None else self.table[:, self.kept[:end]]
-        return table * scale[:, None]
+        found = np.empty((len(table), table.shape[1] + 1, table.shape[2]))
+        np.multiply(table, scale[:, None], out=found[:, :-1])
+        np.multiply(error, scale, out=found[:, -1])
+        return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,21 +100,23 @@ class Linear:
 
     With what the initial states explain taken out: products (B, C, C) of the slopes of the
     prediction in the C columns with one another, cross (B, C) of these with the errors, power
-    (B,), the sum of the errors squared. Initial states do basis (B, M, 12), orthonormal, times
-    triangle (B, 12, 12); slope_along (B, 12, C) and error_along (B, 12) are along that basis.
+    (B,), the sum of the errors squared. Initial states do an orthonormal basis times triangle
+    (B, 12, 12); slope_along (B, 12, C) and error_along (B, 12) are along that basis. basis
+    (B, M, 12): itself, or None where it was not asked for.
     """
 
     products: np.ndarray
     cross: np.ndarray
     power: np.ndarray
-    basis: np.ndarray
     triangle: np.ndarray
     slope_along: np.ndarray
     error_along: np.ndarray
+    basis: np.ndarray | None = None
 
     @property
     def freedom(self) -> np.ndarray:
-        """Return the share of each channel (12,) that the initial states leave."""
+        """Return the share of each channel (12,) that the initial states leave, by the basis."""
+        assert self.basis is not None
         spent = np.sum(self.basis ** 2, axis=-1).reshape(-1, ERRORS)
         return 1.0 - spent.mean(axis=0)
 
@@ -178,13 +188,16 @@ def tangent_of(flight: Flight, vehicle: Vehicle, z: np.ndarray, starts: np.ndarr
     sets[np.arange(1, len(sets)), columns] += steps
     # A start elsewhere moves the whole rollout, exactly, unless the ground is felt.
     shifts = 3 if (z[SPLIT:][GROUND] == registry.NULL[GROUND]).all() else 2
-    turned = ERRORS - shifts
-    moves = np.diag(STATE_STEP)[shifts:]
+    # Nor does a start that is turned change anything else where the attitude is given.
+    turns = GROUPS['attitude'] if flight.guide is not None else slice(0, 0)
+    apart = [k for k in range(shifts, ERRORS) if k not in range(ERRORS)[turns]]
+    moves = np.diag(STATE_STEP)[apart]
     all_starts = np.concatenate([
         starts, moved(starts[None], moves[:, None]).reshape(-1, starts.shape[1]),
         np.tile(starts, (len(columns), 1))]).reshape(-1, *starts.shape)
-    factors = 1.0 / np.concatenate([STATE_STEP[shifts:], steps])
-    which = np.append(np.zeros(1 + turned, int), np.arange(1, len(sets)))
+    places = np.array([*apart, *range(ERRORS, ERRORS + len(columns))])
+    factors = 1.0 / np.concatenate([STATE_STEP[apart], steps])
+    which = np.append(np.zeros(1 + len(apart), int), np.arange(1, len(sets)))
     table = np.zeros((batch, ERRORS + len(columns) + 1, (flight.count + 1) * ERRORS), SLOPE)
     for axis in range(shifts):
         table[:, axis, axis::ERRORS] = 1.0
@@ -200,13 +213,27 @@ def tangent_of(flight: Flight, vehicle: Vehicle, z: np.ndarray, starts: np.ndarr
         if part.start == 0:
             base, out = out[0].copy(), out[1:]
         at = slice(max(part.start - 1, 0), part.stop - 1)
-        slopes(out, base, factors[at], table[:, shifts:-1][:, at])
+        slopes(out, base, factors[at], places[at], table)
+    if flight.guide is not None:
+        for axis, turned in zip(range(ERRORS)[turns], np.moveaxis(_turned_on(base), -1, 0),
+                                strict=True):
+            table[:, axis].reshape(batch, -1, ERRORS)[..., turns] = turned
     drift = table[:, -1].reshape(batch, flight.count + 1, ERRORS)
     t = flight.course.t[flight.first[:, None] + np.arange(flight.count + 1)]
     drift[:, 1:-1] = difference(base[:, 2:], base[:, :-2]) / (t[:, 2:] - t[:, :-2])[..., None]
     drift[:, 0], drift[:, -1] = drift[:, 1], drift[:, -2]
     drift[..., 9:] = 0.0
     return Tangent(table)
+
+
+def _turned_on(states: np.ndarray) -> np.ndarray:
+    """
+    Return what a turn of the first of states (B, M, 13) makes of all of them, (B, M, 3, 3).
+
+    In the frame of each, by a turn about each axis of the first: in the world it stays the same.
+    """
+    attitudes = rotation_matrix(states[..., 6:10])
+    return attitudes.transpose(0, 1, 3, 2) @ attitudes[:, :1]
 
 
 def _parts(which: np.ndarray, length: int) -> Iterator[slice]:
@@ -272,7 +299,7 @@ def whitening_of(wrench: np.ndarray, scale: np.ndarray, slow: np.ndarray) -> Whi
 
 
 def linear_of(tangent: Tangent, raw: np.ndarray, scale: np.ndarray, clock: bool = True,
-              white: Whitening | None = None) -> Linear:
+              white: Whitening | None = None, with_basis: bool = False) -> Linear:
     """
     Return the Linear of a flight from its Tangent.
 
@@ -280,34 +307,27 @@ def linear_of(tangent: Tangent, raw: np.ndarray, scale: np.ndarray, clock: bool 
     weight of each sample over its noise; clock as of linearise; white: that of the
     flight, or None where no slow force or moment is expected.
     """
-    scale = np.broadcast_to(scale, raw.shape)
-    parts = [_linear_of(tangent.of_rollouts(part), raw[part], scale[part], clock,
-                        white and white.of_rollouts(part))
-             for part in (slice(begin, begin + ROLLOUTS) for begin in
-                          range(0, len(raw), ROLLOUTS))]
-    return Linear(*(np.concatenate([getattr(part, one.name) for part in parts])
-                    for one in fields(Linear)))
-
-
-def _linear_of(tangent: Tangent, raw: np.ndarray, scale: np.ndarray, clock: bool,
-               white: Whitening | None) -> Linear:
-    """Return the Linear of some rollouts."""
-    table = tangent.weighed(scale.reshape(len(raw), -1), clock)
-    error = (raw * scale).reshape(len(raw), -1)
-    if white is not None:
-        table, error = white.whitened(table), white.whitened(error[:, None])[:, 0]
-    starts, slope = table[:, :ERRORS], table[:, ERRORS:]
+    error = raw.reshape(len(raw), -1)
+    scale = np.broadcast_to(scale, raw.shape).reshape(error.shape)
+    products, starts = [], []
+    for begin in range(0, len(raw), ROLLOUTS):
+        part = slice(begin, begin + ROLLOUTS)
+        table = tangent.of_rollouts(part).weighed(scale[part], clock, error[part])
+        if white is not None:
+            table = white.of_rollouts(part).whitened(table)
+        products.append(table @ table.transpose(0, 2, 1))
+        if with_basis:
+            starts.append(table[:, :ERRORS])
+    whole = np.concatenate(products)
     # The first sample shows every initial state by itself, so that this has full rank.
-    lower = np.linalg.cholesky(starts @ starts.transpose(0, 2, 1))
-    basis = np.linalg.inv(lower) @ starts
-    across = basis.transpose(0, 2, 1)
-    along, shown = slope @ across, (basis @ error[..., None])[..., 0]
+    lower = np.linalg.cholesky(whole[:, :ERRORS, :ERRORS])
+    across = np.linalg.inv(lower)
     # Products of residuals are differences of products: the slopes themselves are large.
-    products = slope @ slope.transpose(0, 2, 1) - along @ along.transpose(0, 2, 1)
-    cross = (slope @ error[..., None] - along @ shown[..., None])[..., 0]
-    power = np.sum(error ** 2, axis=1) - np.sum(shown ** 2, axis=1)
-    return Linear(products, cross, power, across, lower.transpose(0, 2, 1),
-                  along.transpose(0, 2, 1), shown)
+    along = across @ whole[:, :ERRORS, ERRORS:]
+    rest = whole[:, ERRORS:, ERRORS:] - along.transpose(0, 2, 1) @ along
+    basis = (across @ np.concatenate(starts)).transpose(0, 2, 1) if with_basis else None
+    return Linear(rest[:, :-1, :-1], rest[:, :-1, -1], rest[:, -1, -1], lower.transpose(0, 2, 1),
+                  along[..., :-1], along[..., -1], basis)
 
 
 def new_starts(linear: Linear, starts: np.ndarray, step: np.ndarray) -> np.ndarray:

@@ -138,28 +138,33 @@ def _act(t: np.ndarray, stamps: np.ndarray, commands: np.ndarray, delay: float, 
         close = CLOSE * step
         while at + 1 < last and stamps[at + 1] + delay <= t[k] + close:
             at += 1
-        if k == 0 or lag == 0.0:
-            speeds[k] = commands[at]
-        followed[k] = commands[at]
+        # Of rows no views are made: to count these would take longer than all else.
+        for j in range(n):
+            if k == 0 or lag == 0.0:
+                speeds[k, j] = commands[at, j]
+            followed[k, j] = commands[at, j]
         if k + 1 == count:
             break
-        now[:] = speeds[k]
+        for j in range(n):
+            now[j] = speeds[k, j]
+            sums[0, j] = sums[1, j] = sums[2, j] = 0.0
         done, first = 0.0, at
-        sums[:] = 0.0
         while at + 1 < last and stamps[at + 1] + delay < t[k + 1] - close:
             length = stamps[at + 1] + delay - t[k] - done
-            _advance(now, commands[at], length, step - done, lag, sums)
+            _advance(now, commands, at, length, step - done, lag, sums)
             done += length
             at += 1
         if lag > 0.0 or at > first:
-            _advance(now, commands[at], step - done, step - done, lag, sums)
-        speeds[k + 1] = now
+            _advance(now, commands, at, step - done, step - done, lag, sums)
+        for j in range(n):
+            speeds[k + 1, j] = now[j]
         if at > first:
             begin, half, full = shares(step, lag)
-            followed[k] = (now - speeds[k] * full) / (1.0 - full)
-            same[:] = 0.0
-            now[:] = speeds[k]
-            _advance(now, followed[k], step, step, lag, same)
+            for j in range(n):
+                followed[k, j] = (now[j] - speeds[k, j] * full) / (1.0 - full)
+                now[j] = speeds[k, j]
+                same[0, j] = same[1, j] = same[2, j] = 0.0
+            _advance(now, followed, k, step, step, lag, same)
             for j in range(n):
                 mean = (sums[0, j] - same[0, j]) / step
                 once = (sums[1, j] - same[1, j]) / step ** 2
@@ -179,10 +184,10 @@ def _act(t: np.ndarray, stamps: np.ndarray, commands: np.ndarray, delay: float, 
 
 
 @compiled(fused=True, inlined=True)
-def _advance(speed: np.ndarray, command: np.ndarray, length: float, left: float, lag: float,
-             sums: np.ndarray) -> None:
+def _advance(speed: np.ndarray, commands: np.ndarray, row: int, length: float, left: float,
+             lag: float, sums: np.ndarray) -> None:
     """
-    Advance speeds (n,) by length s, `left` s before the end of a step.
+    Advance speeds (n,) to a row of commands (M, n) by length s, `left` s before a step ends.
 
     Adds the integrals of their squares times what remains of the step, to the power of 0, 1 and
     2, to sums (3, n).
@@ -195,7 +200,7 @@ def _advance(speed: np.ndarray, command: np.ndarray, length: float, left: float,
     last_one = lag * (2.0 * late_one - length ** 2 * gone)
     last_two = 0.5 * lag * (2.0 * late_two - length ** 2 * gone * gone)
     for j in range(len(speed)):
-        target, gap = command[j], speed[j] - command[j]
+        target, gap = commands[row, j], speed[j] - commands[row, j]
         still, mixed, moving = target * target, 2.0 * target * gap, gap * gap
         area = still * length + mixed * one + moving * two
         late = still * length ** 2 / 2.0 + mixed * late_one + moving * late_two
@@ -316,15 +321,15 @@ def _follow_lags(speed: np.ndarray, command: np.ndarray, length: float, left: fl
             sums[1, j] += left * area - late
             sums[2, j] += left * left * area - 2.0 * left * late + last
         if straight < length:
-            _advance(speed[j:j + 1], command[j:j + 1], length - straight, left - straight, lag,
-                     sums[:, j:j + 1])
+            _advance(speed[j:j + 1], command[None, j:j + 1], 0, length - straight,
+                     left - straight, lag, sums[:, j:j + 1])
 
 
 @compiled(fused=True)
 def _match(sums: np.ndarray, step: float, end: np.ndarray, added: np.ndarray) -> None:
     """Write what added to the speeds `end` (n,) has the sums (3, n) of a step s: see actuated."""
     same = np.zeros(sums.shape)
-    _advance(end.copy(), end, step, step, 0.0, same)
+    _advance(end.copy(), end[None], 0, step, step, 0.0, same)
     for j in range(len(end)):
         square = end[j] * end[j]
         mean = (sums[0, j] - same[0, j]) / step

@@ -4,6 +4,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -63,6 +64,11 @@ class Course:
     def volt_share(self) -> np.ndarray:
         """Fall of the voltage as a share of that of reference, (N,)."""
         return self.volt_drop / self.reference_voltage
+
+    @cached_property
+    def steps(self) -> int:
+        """How many steps of the integration lie between two of its samples."""
+        return steps_within(self.t)
 
     def inputs(self, vehicle: Vehicle, steps: int = 1) -> np.ndarray:
         """
@@ -180,7 +186,7 @@ def predict(vehicle: Vehicle, thetas: ArrayLike, course: Course, starts: np.ndar
                          across=None if course.across is None else course.across[rows])
     thetas = np.atleast_2d(np.asarray(thetas, float))
     which = np.zeros(len(starts), np.int64) if which is None else np.asarray(which, np.int64)
-    steps = steps_within(course.t)
+    steps = course.steps
     t, first = finer(course.t, steps), steps * np.asarray(first, np.int64)
     acted = actuated(t, course.stamps, course.commands, thetas)
     inputs = course.inputs(vehicle, steps)
@@ -209,13 +215,12 @@ def rows_needed(length: int, first: ArrayLike, count: int) -> np.ndarray:
     Those of each, and the one before it, whose command the rotors still follow where it begins.
     All of a flight most of whose samples are needed. Args: first (B,), count: as of predict.
     """
-    first = np.unique(np.asarray(first, np.int64))
-    change = np.zeros(length + 1, np.int64)
-    change[0] = 1
-    change[1] = -1
-    np.add.at(change, np.maximum(first - 1, 0), 1)
-    change[first + count + 1] -= 1
-    rows = np.flatnonzero(np.cumsum(change))
+    first = np.asarray(first, np.int64)
+    begun = np.bincount(np.maximum(first - 1, 0), minlength=length + 1)
+    done = np.bincount(first + count + 1, minlength=length + 1)
+    begun[0] += 1   # the first one of the flight
+    done[1] += 1
+    rows = np.flatnonzero(np.cumsum(begun - done))
     return rows if 2 * len(rows) < length else np.arange(length)
 
 

@@ -254,15 +254,23 @@ def _place(x: np.ndarray, s: np.ndarray) -> None:
 @compiled(fused=True, inlined=True)
 def _rotors(s: np.ndarray, rotors: np.ndarray, places: np.ndarray) -> None:
     """Write the rotors' air velocities and heights, and the sum of their spins."""
+    # A loop for each row: of more in one, LLVM does not see that they are apart, and takes lane
+    # after lane instead of several at a time.
     for j in range(rotors.shape[0]):
         spin = places[j, 3]
         for i in range(s.shape[1]):
-            x, y, z = rotors[j, RX, i], rotors[j, RY, i], rotors[j, RZ, i]
-            rotors[j, UX, i] = s[AX, i] + s[TY, i] * z - s[TZ, i] * y
-            rotors[j, UY, i] = s[AY, i] + s[TZ, i] * x - s[TX, i] * z
-            rotors[j, UZ, i] = s[AZ, i] + s[TX, i] * y - s[TY, i] * x
-            rotors[j, HEIGHT, i] = (s[PZ, i] + s[R20, i] * x + s[R21, i] * y + s[R22, i] * z)
+            rotors[j, UX, i] = s[AX, i] + s[TY, i] * rotors[j, RZ, i] - s[TZ, i] * rotors[j, RY, i]
+        for i in range(s.shape[1]):
+            rotors[j, UY, i] = s[AY, i] + s[TZ, i] * rotors[j, RX, i] - s[TX, i] * rotors[j, RZ, i]
+        for i in range(s.shape[1]):
+            rotors[j, UZ, i] = s[AZ, i] + s[TX, i] * rotors[j, RY, i] - s[TY, i] * rotors[j, RX, i]
+        for i in range(s.shape[1]):
+            rotors[j, HEIGHT, i] = (s[PZ, i] + s[R20, i] * rotors[j, RX, i]
+                                    + s[R21, i] * rotors[j, RY, i]
+                                    + s[R22, i] * rotors[j, RZ, i])
+        for i in range(s.shape[1]):
             rotors[j, GAIN, i] = rotors[j, REACTION, i] = 1.0
+        for i in range(s.shape[1]):
             s[SPINS, i] += spin * rotors[j, SPEED, i]
 
 
@@ -280,16 +288,18 @@ def wrench(v: np.ndarray, places: np.ndarray, theta: np.ndarray, s: np.ndarray,
     for j in range(rotors.shape[0]):
         spin = places[j, 3]
         for i in range(s.shape[1]):
-            x, y, z = rotors[j, RX, i], rotors[j, RY, i], rotors[j, RZ, i]
-            hx, hy, hz = rotors[j, HX, i], rotors[j, HY, i], rotors[j, HZ, i]
-            s[FX, i] += hx
-            s[FY, i] += hy
-            s[FZ, i] += hz
-            s[MX, i] += y * hz - z * hy
-            s[MY, i] += z * hx - x * hz
+            s[FX, i] += rotors[j, HX, i]
+            s[FY, i] += rotors[j, HY, i]
+            s[FZ, i] += rotors[j, HZ, i]
+        for i in range(s.shape[1]):     # a loop for each row: see _rotors
+            s[MX, i] += rotors[j, RY, i] * rotors[j, HZ, i] - rotors[j, RZ, i] * rotors[j, HY, i]
+        for i in range(s.shape[1]):
+            s[MY, i] += rotors[j, RZ, i] * rotors[j, HX, i] - rotors[j, RX, i] * rotors[j, HZ, i]
+        for i in range(s.shape[1]):
             torque = (s[TORQUE, i] * v[6, i] * rotors[j, SPEED, i] ** 2
                       * rotors[j, REACTION, i])
-            s[MZ, i] += x * hy - y * hx + spin * torque
+            s[MZ, i] += (rotors[j, RX, i] * rotors[j, HY, i] - rotors[j, RY, i] * rotors[j, HX, i]
+                         + spin * torque)
 
 
 @compiled(fused=True, inlined=True)

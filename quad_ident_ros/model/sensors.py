@@ -30,12 +30,14 @@ class Sensors(NamedTuple):
     """
     What T parameter sets make of a state of the centre of mass.
 
-    acts (T,) whether they change it at all; arms (T, 3) m to the origin of the body; attitudes and
-    rates (T, 4), the turns from the body to the frames of attitude and of rate; headings (T, 4),
-    those of the world of the attitude; biases (T, 3) of the rate, rad/s.
+    acts and turns (T,) whether they change it at all, and whether attitude or rate; arms (T, 3) m
+    to the origin of the body; attitudes and rates (T, 4), the turns from the body to the frames of
+    attitude and of rate; headings (T, 4), those of the world of the attitude; biases (T, 3) of the
+    rate, rad/s.
     """
 
     acts: np.ndarray
+    turns: np.ndarray
     arms: np.ndarray
     attitudes: np.ndarray
     rates: np.ndarray
@@ -46,8 +48,8 @@ class Sensors(NamedTuple):
 def sensors_of(theta: np.ndarray) -> Sensors:
     """Return the Sensors of parameter sets (T, P)."""
     arms, biases = (np.ascontiguousarray(theta[:, part]) for part in (COM, BIAS))
-    return Sensors(np.any(theta[:, SEEN], axis=1), arms, *tilts_of(theta), heading_of(theta),
-                   biases)
+    acts, turns = (np.any(theta[:, part], axis=1) for part in (SEEN, TURNED))
+    return Sensors(acts, turns, arms, *tilts_of(theta), heading_of(theta), biases)
 
 
 def tilts_of(theta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -82,10 +84,10 @@ def _changed(theta: np.ndarray, states: np.ndarray, forward: bool) -> np.ndarray
 
 
 @compiled(fused=True)
-def change(acts: np.ndarray, arms: np.ndarray, attitudes: np.ndarray, rates: np.ndarray,
-           headings: np.ndarray, biases: np.ndarray, which: np.ndarray, guides: np.ndarray,
-           guide_of: np.ndarray, first: np.ndarray, stride: int, states: np.ndarray, forward: bool
-           ) -> None:
+def change(acts: np.ndarray, turns: np.ndarray, arms: np.ndarray, attitudes: np.ndarray,
+           rates: np.ndarray, headings: np.ndarray, biases: np.ndarray, which: np.ndarray,
+           guides: np.ndarray, guide_of: np.ndarray, first: np.ndarray, stride: int,
+           states: np.ndarray, forward: bool) -> None:
     """
     Change states (B, M, 13) in place: those of the centre of mass to recorded ones, or back.
 
@@ -94,25 +96,31 @@ def change(acts: np.ndarray, arms: np.ndarray, attitudes: np.ndarray, rates: np.
     velocity, instead of the states'; without any, G is 0; guide_of (T,) that of each set; first
     (B,), stride: the samples of the guide at the first state of a rollout, and per state.
     """
+    share = -1.0 if forward else 1.0
     for b in range(states.shape[0]):
         k = which[b]
         if not acts[k]:
             continue
-        for n in range(states.shape[1]):
-            x = states[b, n]
-            if not forward:
-                _unturned(x, attitudes[k], rates[k], headings[k], biases[k])
-            share = -1.0 if forward else 1.0
-            if guides.shape[0]:
-                _shift(x, guides[guide_of[k], first[b] + stride * n], arms[k], share)
-            else:
-                _shift(x, x[6:], arms[k], share)
-            if forward:
-                _tilt(x, attitudes[k], 1.0)
-                _turn_world(x, headings[k], 1.0)
-                _turn_rate(x, rates[k], -1.0)
+        x, attitude, rate, heading = states[b], attitudes[k], rates[k], headings[k]
+        bias, arm = biases[k], arms[k]
+        # Of a row of x no view is made: to count the views would take longer than all else.
+        if turns[k] and not forward:
+            for n in range(len(x)):
+                _unturned(x, n, attitude, rate, heading, bias)
+        if guides.shape[0]:
+            guide = guides[guide_of[k]]
+            for n in range(len(x)):
+                _shift(x, n, guide, first[b] + stride * n, 0, arm, share)
+        else:
+            for n in range(len(x)):
+                _shift(x, n, x, n, 6, arm, share)
+        if turns[k] and forward:
+            for n in range(len(x)):
+                _tilt(x, n, attitude, 1.0)
+                _turn_world(x, n, heading, 1.0)
+                _turn_rate(x, n, rate, -1.0)
                 for i in range(3):
-                    x[10 + i] += biases[k, i]
+                    x[n, 10 + i] += bias[i]
 
 
 @compiled(fused=True)
@@ -123,74 +131,76 @@ def lead(attitudes: np.ndarray, rates: np.ndarray, headings: np.ndarray, biases:
 
     out (G, N, GUIDE). The quaternions' signs are such that none jumps to its negative.
     """
-    x = np.empty(recorded.shape[1])
+    x = np.empty((1, recorded.shape[1]))
     for g in range(out.shape[0]):
+        attitude, rate, heading, bias = attitudes[g], rates[g], headings[g], biases[g]
         for n in range(out.shape[1]):
-            x[6:] = recorded[n, 6:]
-            _unturned(x, attitudes[g], rates[g], headings[g], biases[g])
+            for i in range(6, recorded.shape[1]):
+                x[0, i] = recorded[n, i]
+            _unturned(x, 0, attitude, rate, heading, bias)
             sign = 1.0
-            if n:
-                last = out[g, n - 1]
-                if x[6] * last[0] + x[7] * last[1] + x[8] * last[2] + x[9] * last[3] < 0.0:
-                    sign = -1.0
+            if n and (x[0, 6] * out[g, n - 1, 0] + x[0, 7] * out[g, n - 1, 1]
+                      + x[0, 8] * out[g, n - 1, 2] + x[0, 9] * out[g, n - 1, 3]) < 0.0:
+                sign = -1.0
             for i in range(4):
-                out[g, n, i] = sign * x[6 + i]
+                out[g, n, i] = sign * x[0, 6 + i]
             for i in range(3):
-                out[g, n, 4 + i] = x[10 + i]
+                out[g, n, 4 + i] = x[0, 10 + i]
 
 
 @compiled(fused=True, inlined=True)
-def _unturned(x: np.ndarray, attitude: np.ndarray, rate: np.ndarray, heading: np.ndarray,
+def _unturned(x: np.ndarray, n: int, attitude: np.ndarray, rate: np.ndarray, heading: np.ndarray,
               bias: np.ndarray) -> None:
-    """Take bias and turns of sensors out of the attitude and the rate of a state (13,)."""
+    """Take bias and turns of sensors out of attitude and rate of state n of x (M, 13)."""
     for i in range(3):
-        x[10 + i] -= bias[i]
-    _turn_rate(x, rate, 1.0)
-    _turn_world(x, heading, -1.0)
-    _tilt(x, attitude, -1.0)
+        x[n, 10 + i] -= bias[i]
+    _turn_rate(x, n, rate, 1.0)
+    _turn_world(x, n, heading, -1.0)
+    _tilt(x, n, attitude, -1.0)
 
 
 @compiled(fused=True, inlined=True)
-def _tilt(x: np.ndarray, tilt: np.ndarray, sense: float) -> None:
-    """Turn the attitude of a state (13,) by a quaternion (4,) in the body, back where -1."""
-    w, a, b, c = x[6], x[7], x[8], x[9]
+def _tilt(x: np.ndarray, n: int, tilt: np.ndarray, sense: float) -> None:
+    """Turn the attitude of state n by a quaternion (4,) in the body, back where -1."""
+    w, a, b, c = x[n, 6], x[n, 7], x[n, 8], x[n, 9]
     t, i, j, k = tilt[0], sense * tilt[1], sense * tilt[2], sense * tilt[3]
-    x[6], x[7], x[8], x[9] = product_of(w, a, b, c, t, i, j, k)
+    x[n, 6], x[n, 7], x[n, 8], x[n, 9] = product_of(w, a, b, c, t, i, j, k)
 
 
 @compiled(fused=True, inlined=True)
-def _turn_world(x: np.ndarray, turned: np.ndarray, sense: float) -> None:
-    """Turn the world of the attitude of a state (13,) by a quaternion (4,), back where -1."""
+def _turn_world(x: np.ndarray, n: int, turned: np.ndarray, sense: float) -> None:
+    """Turn the world of the attitude of state n by a quaternion (4,), back where -1."""
     w, i, j, k = turned[0], sense * turned[1], sense * turned[2], sense * turned[3]
-    x[6], x[7], x[8], x[9] = product_of(w, i, j, k, x[6], x[7], x[8], x[9])
+    x[n, 6], x[n, 7], x[n, 8], x[n, 9] = product_of(w, i, j, k, x[n, 6], x[n, 7], x[n, 8], x[n, 9])
 
 
 @compiled(fused=True, inlined=True)
-def _turn_rate(x: np.ndarray, turned: np.ndarray, sense: float) -> None:
-    """Turn the rate of a state (13,) by a quaternion (4,), or back where sense is -1."""
+def _turn_rate(x: np.ndarray, n: int, turned: np.ndarray, sense: float) -> None:
+    """Turn the rate of state n by a quaternion (4,), or back where sense is -1."""
     w, i, j, k = turned[0], sense * turned[1], sense * turned[2], sense * turned[3]
-    a, b, c = x[10], x[11], x[12]
+    a, b, c = x[n, 10], x[n, 11], x[n, 12]
     u, v, t = 2.0 * (j * c - k * b), 2.0 * (k * a - i * c), 2.0 * (i * b - j * a)
-    x[10] += w * u + j * t - k * v
-    x[11] += w * v + k * u - i * t
-    x[12] += w * t + i * v - j * u
+    x[n, 10] += w * u + j * t - k * v
+    x[n, 11] += w * v + k * u - i * t
+    x[n, 12] += w * t + i * v - j * u
 
 
 @compiled(fused=True, inlined=True)
-def _shift(x: np.ndarray, lead: np.ndarray, arm: np.ndarray, share: float) -> None:
-    """Move position and velocity of a state (13,) by a share of an arm (3,), see _add_turned."""
+def _shift(x: np.ndarray, n: int, lead: np.ndarray, row: int, at: int, arm: np.ndarray,
+           share: float) -> None:
+    """Move position and velocity of state n by a share of an arm (3,), see _add_turned."""
     ax, ay, az = share * arm[0], share * arm[1], share * arm[2]
-    _add_turned(x, 0, lead, ax, ay, az)
-    _add_turned(x, 3, lead, lead[5] * az - lead[6] * ay, lead[6] * ax - lead[4] * az,
-                lead[4] * ay - lead[5] * ax)
+    p, q, r = lead[row, at + 4], lead[row, at + 5], lead[row, at + 6]
+    _add_turned(x, n, 0, lead, row, at, ax, ay, az)
+    _add_turned(x, n, 3, lead, row, at, q * az - r * ay, r * ax - p * az, p * ay - q * ax)
 
 
 @compiled(fused=True, inlined=True)
-def _add_turned(x: np.ndarray, place: int, lead: np.ndarray, a: float, b: float, c: float
-                ) -> None:
-    """Add a vector of a body with an attitude and a rate, lead (7,), to elements of a state."""
-    w, i, j, k = lead[0], lead[1], lead[2], lead[3]
+def _add_turned(x: np.ndarray, n: int, place: int, lead: np.ndarray, row: int, at: int, a: float,
+                b: float, c: float) -> None:
+    """Add to state n a vector of a body whose attitude, and rate, stand in a row from `at` on."""
+    w, i, j, k = lead[row, at], lead[row, at + 1], lead[row, at + 2], lead[row, at + 3]
     u, v, t = 2.0 * (j * c - k * b), 2.0 * (k * a - i * c), 2.0 * (i * b - j * a)
-    x[place] += a + w * u + j * t - k * v
-    x[place + 1] += b + w * v + k * u - i * t
-    x[place + 2] += c + w * t + i * v - j * u
+    x[n, place] += a + w * u + j * t - k * v
+    x[n, place + 1] += b + w * v + k * u - i * t
+    x[n, place + 2] += c + w * t + i * v - j * u

@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 from quad_ident_ros.flight.fly import fly_closed_loop
-from quad_ident_ros.greybox.errors import ERRORS
+from quad_ident_ros.greybox.errors import difference, ERRORS, GROUPS, moved
 from quad_ident_ros.greybox.estimate import estimate
-from quad_ident_ros.greybox.flights import flight_of, track_of
-from quad_ident_ros.greybox.linear import errors_along, slopes_at
+from quad_ident_ros.greybox.flights import flight_of, guided, track_of
+from quad_ident_ros.greybox.linear import errors_along, slopes_at, STATE_STEP
 from quad_ident_ros.greybox.parameters import INDEX, limits, nominal
+from quad_ident_ros.greybox.predictor import by_model
 from quad_ident_ros.model.vehicle import load_vehicle
 
 VEHICLE = load_vehicle('hummingbird')
@@ -37,7 +38,8 @@ def slopes(flight):
 
 def table(tangent):
     """Return the rows of a tangent that count."""
-    return tangent.weighed(np.ones((len(tangent.table), tangent.table.shape[-1])), True)
+    ones = np.ones((len(tangent.table), tangent.table.shape[-1]))
+    return tangent.weighed(ones, True, ones)[:, :-1]
 
 
 def missed(slopes, flight, move):
@@ -70,3 +72,16 @@ def test_some_of_the_columns_are_what_they_are_in_all(slopes, flight):
     alone = slopes_at([flight], VEHICLE, z, [z], [flight.states[flight.first]],
                       COLUMNS[1:2]).tangents[0]
     assert table(some) == pytest.approx(table(alone), rel=1e-12, abs=1e-15)
+
+
+def test_a_turn_of_the_start_is_what_flights_make_of_it(flight):
+    led, z = guided(flight), nominal(VEHICLE)
+    z[INDEX['attitude_misalignment.roll']], z[INDEX['com_offset.x']] = 0.05, 0.01
+    z[INDEX['blade_flapping.coefficient']] = 0.01
+    starts = led.states[led.first]
+    [tangent] = slopes_at([led], VEHICLE, z, [z], [starts], COLUMNS).tangents
+    for axis in range(ERRORS)[GROUPS['attitude']]:
+        there = moved(starts, STATE_STEP[axis] * np.eye(ERRORS)[axis])
+        flown = difference(*(by_model(led, VEHICLE, z, each, led.first, led.count)
+                             for each in (there, starts))) / STATE_STEP[axis]
+        assert tangent.table[:, axis] == pytest.approx(flown.reshape(len(starts), -1), abs=1e-6)
