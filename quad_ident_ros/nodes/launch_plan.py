@@ -19,8 +19,7 @@ from quad_ident_ros.nodes.parameter_files import (
 )
 
 SIMULATOR = 'simulator'
-# Signals by which a node ends that was told to; the last where FastDDS holds it, see process.run.
-TOLD = (signal.SIGINT, signal.SIGTERM, signal.SIGALRM)
+TOLD = (signal.SIGINT, signal.SIGTERM)   # signals by which a node ends that was told to
 
 
 @dataclass(frozen=True)

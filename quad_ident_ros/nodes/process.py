@@ -19,6 +19,7 @@ from rclpy.utilities import remove_ros_args
 
 from quad_ident_ros import resources
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.nodes.last_end import ended_after
 from quad_ident_ros.nodes.parameter_files import is_for, names_in
 from quad_ident_ros.nodes.shared_memory import free_abandoned, HearingWatch, keep_to_oneself
 from quad_ident_ros.nodes.start_news import StartNews
@@ -43,8 +44,8 @@ def run(node_class, help_page, args=None, executor_class=SingleThreadedExecutor,
     Args: node_class: called without arguments, its `close()` is called at the end; help_page:
     printed for --help; args: the command line, by default that of the process; warm_up: a function
     that `warm_up` of the node runs while the node exists. Bad input gives one line on standard
-    error and exit code 2. Where the middleware does not let go of a closed node, SIGALRM ends the
-    process. A node that turns out to be deaf just after its start, without work yet, starts once
+    error and exit code 2. Where the middleware does not let go of a closed node, the process ends
+    without it. A node that turns out to be deaf just after its start, without work yet, starts once
     more, with the parameters that were set since.
     """
     name = node_class.__name__.lower()
@@ -113,16 +114,14 @@ def _run(node_class, args, executor_class, warm_up):
         if node is not None:
             node.close()
         # FastDDS can deadlock when peers leave at once (its issue 6502), with the interpreter
-        # locked. All is saved and reported by now, so the alarm's default may end the process.
-        signal.signal(signal.SIGALRM, signal.SIG_DFL)
-        signal.alarm(LETTING_GO)
-        if executor is not None:
-            executor.remove_node(node)
-            executor.shutdown()
-        if node is not None:
-            node.destroy_node()
-        rclpy.try_shutdown()
-        signal.alarm(0)
+        # locked. All is saved and reported by now, so the process may end in the middle of it.
+        with ended_after(LETTING_GO):
+            if executor is not None:
+                executor.remove_node(node)
+                executor.shutdown()
+            if node is not None:
+                node.destroy_node()
+            rclpy.try_shutdown()
         for number, handler in previous.items():
             signal.signal(number, handler)
     if deaf and not stop:

@@ -112,7 +112,7 @@ def test_all_nodes_end_when_one_of_them_does_unless_it_is_started_once_more(
         for killed in (signal.SIGKILL, signal.SIGSEGV, signal.SIGABRT):
             assert node.ended_by(-killed) == ([] if again else reason)
         # It was told to end, or refuses its parameters, which a new start would not mend.
-        for code in (0, 1, 2, -signal.SIGINT, -signal.SIGTERM, -signal.SIGALRM):
+        for code in (0, 1, 2, -signal.SIGINT, -signal.SIGTERM):
             assert node.ended_by(code) == reason
 
 
