@@ -35,10 +35,10 @@ def effects_of_unknown_form(bench: Bench, judged: Judgement, remains: Sequence[U
     the effect does not act. Another cause knows nothing of it. Each makes a variance of the
     residual force or moment beside that of the noise: in proportion to the square of what the
     effect does, or the same throughout. The former has to be likelier by more than `shown`
-    standard errors over blocks of time (Vuong, Econometrica 57, 1989), for an effect that matters
-    in each group of outputs in which something remains, and is explained there less well than
-    formulas usually do (`form_error`). Of several effects the one that it is most clearly so for;
-    none where it is for none. The share is the smallest of those groups.
+    standard errors over blocks of time (Vuong, Econometrica 57, 1989), for an effect that is
+    explained less well than formulas usually do (`form_error`), where something remains. It need
+    not matter there: air near the ground pushes and turns, but most of its laws only push. Of
+    several effects the one that it is most clearly so for; none where it is for none.
     Args: remains: the channels in which something does; wrenches: what the model does not
     explain of each flight learnt from, and noise (12,): that of their states.
     """
@@ -51,8 +51,8 @@ def effects_of_unknown_form(bench: Bench, judged: Judgement, remains: Sequence[U
     throughout = _likeliest(values, errors, np.ones(len(values)))
     found = {}
     for cause in judged.material:
-        if not (_matters(bench, judged, cause)
-                and _explained(bench, judged, cause) < 1.0 - bench.rules.form_error):
+        explained = _explained_there(bench, judged, cause)
+        if explained and min(explained) >= 1.0 - bench.rules.form_error:
             continue
         acts = _action(bench, judged, cause, wrenches, noise)
         found[cause] = in_errors(_likeliest(values, errors, acts) - throughout, block)
@@ -60,22 +60,17 @@ def effects_of_unknown_form(bench: Bench, judged: Judgement, remains: Sequence[U
     if not clear:
         return {}
     best = max(clear, key=lambda cause: found[cause])
-    return {best.effect: _explained(bench, judged, best)}
+    share = min(_explained_there(bench, judged, best), default=judged.weights[best].explained)
+    return {best.effect: share}
 
 
-def _matters(bench: Bench, judged: Judgement, cause: Candidate) -> bool:
-    """Return whether an effect does something that matters in each group that remains."""
-    shares = lost_shares(judged.model.gap, judged.without[cause].gap, gaps.gap(judged.before),
-                         pooled(judged.noise), bench.rules)
-    return all(shares[name] >= bench.rules.material for name in judged.open_groups)
-
-
-def _explained(bench: Bench, judged: Judgement, cause: Candidate) -> float:
-    """Return the least share of an effect that its form explains where something remains."""
+def _explained_there(bench: Bench, judged: Judgement, cause: Candidate) -> list[float]:
+    """Return the share of an effect that its form explains, in each group where it matters."""
     noise, after, without = pooled(judged.noise), judged.model.gap, judged.without[cause].gap
-    return min(explained_share(after[name], without[name], noise[name],
-                               bench.rules.least(name, noise[name]))
-               for name in judged.open_groups)
+    shares = lost_shares(after, without, gaps.gap(judged.before), noise, bench.rules)
+    return [explained_share(after[name], without[name], noise[name],
+                            bench.rules.least(name, noise[name]))
+            for name in judged.open_groups if shares[name] >= bench.rules.material]
 
 
 def _action(bench: Bench, judged: Judgement, cause: Candidate,

@@ -35,6 +35,9 @@ ACROSS = both(linear('air_y', (DRAG, 0.0, 0.0, 0.0, 0.0, 0.0)),
 # A force to the side that grows with the height, whatever the velocity: no drag.
 HIGH = linear('height', (0.4, 0.0, 0.0, 0.0, 0.0, 0.0))
 
+# A moment of the air about the mast: nobody's law of drag has one.
+TURNING = linear('air_x', (0.0, 0.0, 0.0, 0.0, 0.0, 0.003))
+
 
 def found_of(residual):
     """Return the diagnosis of what flew with a drag of the rotors and a further force."""
@@ -75,6 +78,16 @@ def test_what_does_not_is_unknown():
     found = found_of(HIGH)
     assert found.verdict == ('rotor_drag', 'unknown')
     assert found.form_unknown == ()
+
+
+def test_what_turns_and_comes_and_goes_with_what_pushes_is_its_form():
+    """All of the force is explained, but nothing of the moment."""
+    found = found_of(TURNING)
+    row = found.ranking[0]
+    assert found.verdict == found.form_unknown == ('rotor_drag',)
+    assert found.unknown[0].channel == 'Mz'
+    assert row.explained > 0.9
+    assert f'{100 * row.explained:.0f} % of it explained' in verdict_line(found)
 
 
 def test_one_block_of_time_has_no_standard_error_and_tells_nothing():
