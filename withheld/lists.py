@@ -27,5 +27,5 @@ NOISES = {
 STRANGERS = {
     DEVELOPMENT: ('periodic_force', 'tether', 'thrust_exponent', 'backlash', 'updraft', 'slosh',
                   'ceiling', 'neighbours', 'compass', 'branches', 'leash', 'recoil',
-                  'keel'),
-    EVALUATION: ('wall', 'whirl', 'stutter', 'twisted')}
+                  'keel', 'twisted'),
+    EVALUATION: ('wall', 'whirl', 'stutter', 'flywheel')}

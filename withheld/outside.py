@@ -346,6 +346,27 @@ class Twisted(Influence):
         return np.zeros(3), np.array([0.0, 0.0, self.moment * thrust])
 
 
+class Flywheel(Influence):
+    """
+    A wheel or a scanner that spins on board at one speed: the body resists a turn of its axis.
+
+    By its angular momentum, as a gyrostat (P. C. Hughes, Spacecraft Attitude Dynamics, 1986); it
+    pushes nowhere, and not even a moment is left where nothing turns.
+    """
+
+    LEANS = 0.3                 # rad, at most, of its axis
+
+    def __init__(self, size, weight, radius, rng):
+        """Draw which way it spins, and how its axis leans; take its momentum, (3,) N m s."""
+        axis = np.array([*self.LEANS * rng.uniform(-0.7, 0.7, 2), 1.0])
+        axis *= rng.choice([-1.0, 1.0]) / np.linalg.norm(axis)
+        self.momentum = 0.002 * size * weight * radius * axis
+
+    def wrench(self, now):
+        """Return the moment that it takes to turn its axis along."""
+        return np.zeros(3), np.cross(self.momentum, now.rate)
+
+
 # Each with what of the vehicle its size is measured by.
 KINDS = {'periodic_force': (Periodic, 'weight'), 'tether': (Tether, 'weight'),
          'updraft': (Updraft, 'weight'), 'thrust_exponent': (Exponent, 'hover'),
@@ -355,4 +376,5 @@ KINDS = {'periodic_force': (Periodic, 'weight'), 'tether': (Tether, 'weight'),
          'stutter': (Stutter, 'rotors'), 'compass': (Compass,),
          'branches': (Branches, 'weight', 'radius'), 'leash': (Leash, 'weight'),
          'recoil': (Recoil, 'weight', 'radius'), 'keel': (Keel, 'weight', 'radius'),
-         'twisted': (Twisted, 'weight', 'radius', 'hover')}
+         'twisted': (Twisted, 'weight', 'radius', 'hover'),
+         'flywheel': (Flywheel, 'weight', 'radius')}

@@ -239,3 +239,17 @@ def test_a_twisted_frame_turns_the_body_with_its_thrust_and_pushes_it_nowhere():
         force, moment = twisted.wrench(SimpleNamespace(speeds=np.full(4, 400.0 * turn)))
         assert moment == pytest.approx([0.0, 0.0, twisted.moment * turn ** 2])
         assert not np.any(force)
+
+
+def test_a_flywheel_resists_a_turn_of_its_axis_alone():
+    wheel = outside.Flywheel(1.0, 5.0, 0.1, np.random.default_rng(1))
+    along = wheel.momentum / np.linalg.norm(wheel.momentum)
+    assert abs(along[2]) > np.cos(wheel.LEANS)
+    force, moment = wheel.wrench(SimpleNamespace(rate=2.0 * along))
+    assert not np.any(force) and moment == pytest.approx(np.zeros(3))
+    across = np.cross(along, [1.0, 0.0, 0.0])
+    across /= np.linalg.norm(across)
+    _, moment = wheel.wrench(SimpleNamespace(rate=2.0 * across))
+    # It takes no energy, and turns about the third axis what it is turned by.
+    assert moment @ across == pytest.approx(0.0) and moment @ along == pytest.approx(0.0)
+    assert np.linalg.norm(moment) == pytest.approx(2.0 * np.linalg.norm(wheel.momentum))
