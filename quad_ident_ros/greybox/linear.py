@@ -305,7 +305,8 @@ def linear_of(tangent: Tangent, raw: np.ndarray, scale: np.ndarray, clock: bool 
 
     Args: raw (B, count + 1, 12) recorded minus predicted; scale, of its shape or (12,), the
     weight of each sample over its noise; clock as of linearise; white: that of the
-    flight, or None where no slow force or moment is expected.
+    flight, or None where no slow force or moment is expected; with_basis: whether the Linear has
+    its basis, which takes memory.
     """
     error = raw.reshape(len(raw), -1)
     scale = np.broadcast_to(scale, raw.shape).reshape(error.shape)
