@@ -25,6 +25,12 @@ def test_style():
     assert done.returncode == 0, done.stdout
 
 
+@pytest.mark.parametrize('path', [*ROOT.glob('*.md'), *ROOT.glob('*.rst'),
+                                  *ROOT.glob('docs/**/*.md')], ids=lambda path: path.name)
+def test_no_page_has_what_a_merge_left_in_it(path):
+    assert not re.search(r'^(<{7}|>{7}) ', path.read_text(encoding='utf-8'), re.MULTILINE)
+
+
 PARTS = ('benchmarks', 'docs', 'launch', 'quad_ident_ros', 'scripts', 'soak', 'test', 'withheld')
 
 
