@@ -36,7 +36,7 @@ ACROSS = both(linear('air_y', (DRAG, 0.0, 0.0, 0.0, 0.0, 0.0)),
 HIGH = linear('height', (0.4, 0.0, 0.0, 0.0, 0.0, 0.0))
 
 # A moment of the air about the mast: nobody's law of drag has one.
-TURNING = linear('air_x', (0.0, 0.0, 0.0, 0.0, 0.0, 0.003))
+TURNING = linear('air_x', (0.0, 0.0, 0.0, 0.0, 0.0, 0.01))
 
 
 def found_of(residual):
