@@ -165,6 +165,13 @@ class Bench:
         near[list(rival.columns)] = z[list(rival.columns)]
         return self._changed(model, near, (cause,), (rival,), None)
 
+    def beside(self, model: Model, causes: tuple, z: np.ndarray) -> Model:
+        """Return a Model with effects beside its own, everything refitted; z (Z,) has them."""
+        near = model.z.copy()
+        columns = [column for cause in causes for column in cause.columns]
+        near[columns] = z[columns]
+        return self._changed(model, near, (), causes, None)
+
     def _changed(self, model: Model, z: np.ndarray, removed: tuple, added: tuple,
                  slopes: Slopes | None, kept: Mapping[int, float] = MappingProxyType({}),
                  own: frozenset[Candidate] = frozenset()) -> Model:

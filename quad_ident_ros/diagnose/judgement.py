@@ -111,8 +111,14 @@ def judge(bench: Bench) -> Judgement:
     if set(model.effects) <= set(full.effects):
         final = full if not absent else bench.absent(full, absent)
     else:
-        improbable = tuple(cause for cause in model.effects if cause in absent)
-        final = bench.absent(model, improbable) if improbable else model
+        # Where a form gave way, the best set is no model of them: what is present, but does not
+        # matter, comes back beside the forms that there are.
+        forms = {cause.effect for cause in model.effects}
+        small = tuple(cause for cause in full.effects
+                      if cause.effect not in forms and cause not in absent)
+        final = bench.beside(model, small, full.z) if small else model
+        improbable = tuple(cause for cause in final.effects if cause in absent)
+        final = bench.absent(final, improbable) if improbable else final
     fitted, final = final, bench.without_gusts(final)
     without = {cause: bench.without_gusts(one) for cause, one in without.items()}
     ends = _nominal_ends(bench, final)

@@ -289,6 +289,12 @@ def test_what_a_flight_has_by_itself_stays_when_effects_are_taken_out_and_flight
     columns = less.estimate.columns
     assert begun.z[columns] == pytest.approx(less.z[columns], abs=0.5 * less.estimate.errors.min())
     assert begun.gap == pytest.approx(less.gap, rel=0.01)
+    # What comes back beside the others is what it was.
+    back = bench.beside(less, removed, model.z)
+    assert set(back.effects) == set(model.effects)
+    columns = model.estimate.columns
+    assert back.z[columns] == pytest.approx(model.z[columns], abs=0.5 * model.estimate.errors.min())
+    assert back.gap == pytest.approx(model.gap, rel=0.01)
 
 
 def dragged():
