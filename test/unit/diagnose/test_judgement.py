@@ -293,7 +293,8 @@ def test_what_a_flight_has_by_itself_stays_when_effects_are_taken_out_and_flight
     back = bench.beside(less, removed, model.z)
     assert set(back.effects) == set(model.effects)
     columns = model.estimate.columns
-    assert back.z[columns] == pytest.approx(model.z[columns], abs=0.5 * model.estimate.errors.min())
+    assert back.z[columns] == pytest.approx(model.z[columns],
+                                            abs=0.5 * model.estimate.errors.min())
     assert back.gap == pytest.approx(model.gap, rel=0.01)
 
 
