@@ -37,8 +37,10 @@ def effects_of_unknown_form(bench: Bench, judged: Judgement, remains: Sequence[U
     effect does, or the same throughout. The former has to be likelier by more than `shown`
     standard errors over blocks of time (Vuong, Econometrica 57, 1989), for an effect that is
     explained less well than formulas usually do (`form_error`), where something remains. It need
-    not matter there: air near the ground pushes and turns, but most of its laws only push. Of
-    several effects the one that it is most clearly so for; none where it is for none.
+    not matter there if what remains is unexplained: air near the ground pushes and turns, but most
+    of its laws only push. Of several effects the one that it is most clearly so for, before all of
+    those that matter there; none where it is for none. The share is the least of the groups where
+    it does, or else that of the group in which the effect does most.
     Args: remains: the channels in which something does; wrenches: what the model does not
     explain of each flight learnt from, and noise (12,): that of their states.
     """
@@ -49,17 +51,19 @@ def effects_of_unknown_form(bench: Bench, judged: Judgement, remains: Sequence[U
                       for name in ('values', 'errors'))
     block = _blocks([one.t for one in wrenches], bench.rules.steady_block)
     throughout = _likeliest(values, errors, np.ones(len(values)))
-    found = {}
+    found, there = {}, {}
     for cause in judged.material:
         explained = _explained_there(bench, judged, cause)
-        if explained and min(explained) >= 1.0 - bench.rules.form_error:
+        if (min(explained) >= 1.0 - bench.rules.form_error if explained
+                else not judged.unexplained):
             continue
+        there[cause] = bool(explained)
         acts = _action(bench, judged, cause, wrenches, noise)
         found[cause] = in_errors(_likeliest(values, errors, acts) - throughout, block)
     clear = [cause for cause, value in found.items() if value > bench.rules.shown]
     if not clear:
         return {}
-    best = max(clear, key=lambda cause: found[cause])
+    best = max(clear, key=lambda cause: (there[cause], found[cause]))
     share = min(_explained_there(bench, judged, best), default=judged.weights[best].explained)
     return {best.effect: share}
 

@@ -155,7 +155,8 @@ def _descend(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, columns
                   for raw, sigma, flight in zip(raws, noise, flights, strict=True)]
         wrenches = [tangent.wrench for tangent in tangents]
         whites = _whitenings(wrenches, scales, slow)
-        linears = [linear_of(tangent, raw, scale, clock, white, known is None)
+        # The basis says how much of the noise the initial states take up.
+        linears = [linear_of(tangent, raw, scale, clock, white, with_basis=known is None)
                    for tangent, raw, scale, white
                    in zip(tangents, raws, scales, whites, strict=True)]
         normal = normal_of(linears, flights, layout, clock)

@@ -54,9 +54,9 @@ class Tangent:
 
     def weighed(self, scale: np.ndarray, clock: bool, error: np.ndarray) -> np.ndarray:
         """
-        Return the rows that count, without the last one if not clock, and, last, the error.
+        Return the rows that count and, below them, the error, all times scale, (B, K + 1, M).
 
-        (B, K + 1, M): times scale (B, M). Args: error (B, M).
+        Without the last of the rows if not clock. Args: scale, error (B, M).
         """
         end = None if clock else -1
         table = self.table[:, :end] if self.kept is None else self.table[:, self.kept[:end]]
@@ -318,7 +318,7 @@ def linear_of(tangent: Tangent, raw: np.ndarray, scale: np.ndarray, clock: bool 
             table = white.of_rollouts(part).whitened(table)
         products.append(table @ table.transpose(0, 2, 1))
         if with_basis:
-            starts.append(table[:, :ERRORS])
+            starts.append(table[:, :ERRORS].copy())     # a view would keep the whole table
     whole = np.concatenate(products)
     # The first sample shows every initial state by itself, so that this has full rank.
     lower = np.linalg.cholesky(whole[:, :ERRORS, :ERRORS])

@@ -1,12 +1,12 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""An end of the process that nothing can hold up, for the time in which others close it."""
+"""An end of the process that needs no interpreter, for the time in which others close it."""
 
 from contextlib import contextmanager
 import ctypes
 import sys
 
-LIBRARY = ctypes.CDLL(None, use_errno=True) if sys.platform == 'linux' else None
+LIBRARY = ctypes.CDLL(None) if sys.platform == 'linux' else None
 MONOTONIC = 1       # CLOCK_MONOTONIC and SIGEV_THREAD of <time.h> and <signal.h> on Linux
 IN_A_THREAD = 2
 
@@ -26,27 +26,24 @@ class Times(ctypes.Structure):
 
 
 @contextmanager
-def ended_after(seconds):
+def ended_after(seconds, code):
     """
-    End the process with exit code 0 where the body takes longer than a time, in whole s.
+    End the process with an exit code where the body takes longer than a time, in whole s.
 
-    The end needs no interpreter: a body that holds it and waits for ever is ended, too. Nothing
-    ends the process where the system is not Linux. Raises OSError where it has no timer to give.
+    A body that holds the interpreter and waits for ever is ended, too. Where the system gives no
+    timer, or is not Linux, the body has all the time that it takes.
     """
-    if LIBRARY is None:
-        yield
-        return
     timer = ctypes.c_void_p()
-    leave = ctypes.cast(LIBRARY._exit, ctypes.c_void_p)
-    event = Event(value=0, notify=IN_A_THREAD, function=leave)
-    _check(LIBRARY.timer_create(MONOTONIC, ctypes.byref(event), ctypes.byref(timer)))
-    _check(LIBRARY.timer_settime(timer, 0, ctypes.byref(Times(first=(seconds, 0))), None))
+    create = getattr(LIBRARY, 'timer_create', None)     # in another library before glibc 2.34
+    given = False
+    if create is not None:
+        leave = ctypes.cast(LIBRARY._exit, ctypes.c_void_p)
+        event = Event(value=code, notify=IN_A_THREAD, function=leave)
+        given = create(MONOTONIC, ctypes.byref(event), ctypes.byref(timer)) == 0
+    if given:
+        LIBRARY.timer_settime(timer, 0, ctypes.byref(Times(first=(seconds, 0))), None)
     try:
         yield
     finally:
-        LIBRARY.timer_delete(timer)
-
-
-def _check(code):
-    if code:
-        raise OSError(ctypes.get_errno(), 'no timer for the end of a node')
+        if given:
+            LIBRARY.timer_delete(timer)

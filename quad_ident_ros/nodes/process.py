@@ -45,7 +45,7 @@ def run(node_class, help_page, args=None, executor_class=SingleThreadedExecutor,
     printed for --help; args: the command line, by default that of the process; warm_up: a function
     that `warm_up` of the node runs while the node exists. Bad input gives one line on standard
     error and exit code 2. Where the middleware does not let go of a closed node, the process ends
-    without it. A node that turns out to be deaf just after its start, without work yet, starts
+    without it, with exit code 1 where the node had failed. A node that turns out to be deaf just after its start, without work yet, starts
     once more, with the parameters that were set since.
     """
     name = node_class.__name__.lower()
@@ -114,8 +114,10 @@ def _run(node_class, args, executor_class, warm_up):
         if node is not None:
             node.close()
         # FastDDS can deadlock when peers leave at once (its issue 6502), with the interpreter
-        # locked. All is saved and reported by now, so the process may end in the middle of it.
-        with ended_after(LETTING_GO):
+        # locked. All is saved by now, so the process may end in the middle of it.
+        sys.stdout.flush()
+        well = sys.exc_info()[1] is None and (stop or not deaf)
+        with ended_after(LETTING_GO, 0 if well else 1):
             if executor is not None:
                 executor.remove_node(node)
                 executor.shutdown()

@@ -262,6 +262,13 @@ def test_a_node_that_the_middleware_holds_ends_all_the_same(processes):
         assert process.wait(DEADLINE) == 0
 
 
+def test_a_node_that_fails_and_is_held_does_not_end_well(processes):
+    failing = STUCK.replace("        print('up', flush=True)", '        raise ValueError')
+    with subprocess.Popen([sys.executable, '-c', failing], stdout=subprocess.PIPE, text=True,
+                          env=processes.environment) as process:
+        assert process.wait(DEADLINE) == 1
+
+
 def test_a_domain_on_which_somebody_else_has_a_node_is_not_free(claim):
     number, holder = claim_domain()
     holder.close()
