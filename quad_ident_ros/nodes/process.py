@@ -45,8 +45,8 @@ def run(node_class, help_page, args=None, executor_class=SingleThreadedExecutor,
     printed for --help; args: the command line, by default that of the process; warm_up: a function
     that `warm_up` of the node runs while the node exists. Bad input gives one line on standard
     error and exit code 2. Where the middleware does not let go of a closed node, the process ends
-    without it, with exit code 1 where the node had failed. A node that turns out to be deaf just after its start, without work yet, starts
-    once more, with the parameters that were set since.
+    without it, with exit code 1 where the node had failed. A node that turns out to be deaf just
+    after its start, without work yet, starts once more, with the parameters that were set since.
     """
     name = node_class.__name__.lower()
     args = [name, *(sys.argv[1:] if args is None else args)]
