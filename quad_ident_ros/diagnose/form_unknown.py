@@ -51,19 +51,19 @@ def effects_of_unknown_form(bench: Bench, judged: Judgement, remains: Sequence[U
                       for name in ('values', 'errors'))
     block = _blocks([one.t for one in wrenches], bench.rules.steady_block)
     throughout = _likeliest(values, errors, np.ones(len(values)))
-    found, there = {}, {}
+    likelier, acts_there = {}, {}
     for cause in judged.material:
         explained = _explained_there(bench, judged, cause)
         if (min(explained) >= 1.0 - bench.rules.form_error if explained
                 else not judged.unexplained):
             continue
-        there[cause] = bool(explained)
+        acts_there[cause] = bool(explained)
         acts = _action(bench, judged, cause, wrenches, noise)
-        found[cause] = in_errors(_likeliest(values, errors, acts) - throughout, block)
-    clear = [cause for cause, value in found.items() if value > bench.rules.shown]
+        likelier[cause] = in_errors(_likeliest(values, errors, acts) - throughout, block)
+    clear = [cause for cause, value in likelier.items() if value > bench.rules.shown]
     if not clear:
         return {}
-    best = max(clear, key=lambda cause: (there[cause], found[cause]))
+    best = max(clear, key=lambda cause: (acts_there[cause], likelier[cause]))
     share = min(_explained_there(bench, judged, best), default=judged.weights[best].explained)
     return {best.effect: share}
 

@@ -19,10 +19,10 @@ from rclpy.utilities import remove_ros_args
 
 from quad_ident_ros import resources
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.nodes.last_end import ended_after
 from quad_ident_ros.nodes.parameter_files import is_for, names_in
 from quad_ident_ros.nodes.shared_memory import free_abandoned, HearingWatch, keep_to_oneself
 from quad_ident_ros.nodes.start_news import StartNews
+from quad_ident_ros.nodes.watchdog import watchdog
 
 try:
     from rclpy.experimental.events_executor import EventsExecutor as FastExecutor
@@ -117,7 +117,7 @@ def _run(node_class, args, executor_class, warm_up):
         # locked. All is saved by now, so the process may end in the middle of it.
         sys.stdout.flush()
         well = sys.exc_info()[1] is None and (stop or not deaf)
-        with ended_after(LETTING_GO, 0 if well else 1):
+        with watchdog(LETTING_GO, 0 if well else 1):
             if executor is not None:
                 executor.remove_node(node)
                 executor.shutdown()

@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""An end of the process that needs no interpreter, for the time in which others close it."""
+"""A watchdog that ends the process, and needs no interpreter for that."""
 
 from contextlib import contextmanager
 import ctypes
@@ -26,7 +26,7 @@ class Times(ctypes.Structure):
 
 
 @contextmanager
-def ended_after(seconds, code):
+def watchdog(seconds, code):
     """
     End the process with an exit code where the body takes longer than a time, in whole s.
 
