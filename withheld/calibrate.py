@@ -22,14 +22,15 @@ Array = NDArray[np.float64]
 # Of a row of the ranking, as the library takes them (diagnose/probability.py), in its order; with
 # `lesser`: whether another effect contributes more.
 FEATURES: dict[str, Callable[[dict], float]] = {
-    'contribution': lambda row: size_shown(row['contribution'], row.get('distance') or 0.0),
+    'explained': lambda row: float(row.get('explained') or 0.0),
     'distance': lambda row: float(np.log1p(row.get('distance') or 0.0)),
-    'companions': lambda row: float(row.get('companions') or 0.0),
-    'lesser': lambda row: row['lesser'] * float(np.log1p(row.get('distance') or 0.0))}
-# Where an effect is as probable as not: alone, closing all that can be closed, two standard errors
+    'lesser_distance': lambda row: row['lesser'] * float(np.log1p(row.get('distance') or 0.0)),
+    'lesser_size': lambda row: row['lesser'] * size_shown(row['contribution'],
+                                                          row.get('distance') or 0.0)}
+# Where an effect is as probable as not: alone, explaining all that there is, two standard errors
 # from none. Nearly all flights of development have an effect, and a user's need not: with
 # their base rate less than two standard errors would suffice.
-EVEN = {'contribution': size_shown(1.0, 2.0), 'distance': float(np.log1p(2.0))}
+EVEN = {'explained': 1.0, 'distance': float(np.log1p(2.0))}
 # Effects that act alike: where one is present, a probability of the other is not wrong.
 ALIKE = ({'thrust_scale', 'mass_offset'}, {'actuation_delay', 'motor_lag'})
 RIDGE = 0.01        # on the weights, in units of log likelihood: keeps what a few rows say finite
@@ -70,7 +71,8 @@ def rows_of(pairs: Iterable[tuple[dict, dict]], features: dict = FEATURES) -> Ro
     Return the rows of the rankings of (label, diagnosis) that say whether an effect is present.
 
     Those of the best set alone, which have a contribution; not those that are neither there nor
-    not: what a label allows, and what acts like a present effect.
+    not: what a label allows, and what acts like a present effect. Nor those of unknown form, whose
+    row has the share explained where something remains.
     """
     x, present, groups = [], [], []
     for label, found in pairs:
@@ -83,7 +85,8 @@ def rows_of(pairs: Iterable[tuple[dict, dict]], features: dict = FEATURES) -> Ro
         most = max((row['contribution'] for row in ranked), default=0.0)
         for row in ranked:
             effect = row['effect']
-            if effect not in there and (effect in allowed or _alike(effect, there, found)):
+            if effect in (found.get('form_unknown') or ()) or effect not in there and (
+                    effect in allowed or _alike(effect, there, found)):
                 continue
             known = row | {'lesser': row['contribution'] < most}
             x.append([value_of(known) for value_of in features.values()])

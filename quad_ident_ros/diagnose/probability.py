@@ -18,8 +18,8 @@ class Weight:
     contribution: the share of the closable gap that is lost; stability: how steadily it helps,
     see judgement.stability; explained: the share of its contribution that its form explains;
     gap {group: ...}: without it; distance: by how many standard errors its parameters together
-    differ from no effect, see bench.standard_errors_from_none; companions: how many other
-    effects clearly contribute beside it; lesser: whether another effect contributes more.
+    differ from no effect, see bench.standard_errors_from_none; lesser: whether another effect
+    contributes more.
     """
 
     contribution: float
@@ -27,22 +27,13 @@ class Weight:
     explained: float
     gap: dict
     distance: float
-    companions: int = 0
     lesser: bool = False
 
 
-def beside_others(weights: dict, rules: Rules) -> dict:
-    """
-    Return {candidate: Weight} of the effects of one model, each with what the others contribute.
-
-    How likely an effect is before looking at it shows in the number of others present (Scott and
-    Berger, Annals of Statistics 38, 2010).
-    """
-    contribution, steadiness = rules.companion
-    clear = {cause for cause, one in weights.items()
-             if one.contribution >= contribution and one.stability >= steadiness}
+def beside_others(weights: dict) -> dict:
+    """Return {candidate: Weight} of the effects of one model, all but the greatest as lesser."""
     most = max((one.contribution for one in weights.values()), default=0.0)
-    return {cause: replace(one, companions=len(clear - {cause}), lesser=one.contribution < most)
+    return {cause: replace(one, lesser=one.contribution < most)
             for cause, one in weights.items()}
 
 
@@ -50,9 +41,9 @@ def probabilities(posterior: dict, weights: dict, rules: Rules) -> dict[str, flo
     """
     Return {effect: probability of being present}.
 
-    Of those of the best set by a logistic regression on what they contribute, on how many standard
-    errors they are from no effect and on their companions; of the others by the posterior of all
-    sets that have them, in whichever form.
+    Of those of the best set by a logistic regression on how well their form explains them, on how
+    many standard errors they are from no effect and, beside a greater effect, on what they
+    contribute; of the others by the posterior of all sets that have them, in whichever form.
     Args: posterior {candidate: ...} of the Selection; weights {candidate: Weight}.
     """
     there = {cause.effect: presence(weight, rules, rules.shift(cause.effect))
@@ -88,13 +79,14 @@ def presence(weight: Weight, rules: Rules, shift: float = 0.0) -> float:
     shift: prior knowledge of the effect, see Rules.shift.
 
     Of standard errors the logarithm counts: ten more tell little where there are thirty, for what
-    formulas are wrong by is not known well. They tell less of an effect that may stand for what
-    the formula of a greater one is wrong by.
+    formulas are wrong by is not known well. A lesser effect may stand for what the formula of a
+    greater one is wrong by: of it they tell less, and its size tells more.
     """
-    base, share, far, beside, lesser = rules.calibration
-    value = (base + share * size_shown(weight.contribution, weight.distance)
-             + (far + lesser * weight.lesser) * np.log1p(weight.distance)
-             + beside * weight.companions + shift)
+    base, form, far, lesser_far, lesser_size = rules.calibration
+    value = base + form * weight.explained + far * np.log1p(weight.distance) + shift
+    if weight.lesser:
+        value += (lesser_far * np.log1p(weight.distance)
+                  + lesser_size * size_shown(weight.contribution, weight.distance))
     return float(1.0 / (1.0 + np.exp(-value)))
 
 

@@ -118,10 +118,10 @@ def test_what_is_known_apart_matters_whatever_the_error_of_form_of_others():
 
 
 @pytest.mark.parametrize(('contribution', 'distance', 'expected'), [
-    (0.08, 30.0, True), (0.08, 6.0, False), (1.0, 0.95 * RULES.shown, False)])
+    (0.08, 30.0, True), (0.02, 4.0, False), (1.0, 0.95 * RULES.shown, False)])
 def test_what_is_probable_and_some_standard_errors_from_none_is_clear(
         contribution, distance, expected):
-    weight = Weight(contribution, 5.0, 0.9, {}, distance)
+    weight = Weight(contribution, 5.0, 0.9, {}, distance, lesser=True)
     assert clear([weight], distance, RULES) is expected
 
 

@@ -13,8 +13,7 @@ from withheld.__main__ import main
 
 def constant_of(weights):
     """Return the constant with which two standard errors of all that there is are even odds."""
-    return -(weights.get('contribution', 0.0) * np.sqrt(0.75)
-             + weights.get('distance', 0.0) * np.log(3.0))
+    return -(weights.get('explained', 0.0) + weights.get('distance', 0.0) * np.log(3.0))
 
 
 def drawn(weights, count=20000, seed=1):
@@ -28,8 +27,8 @@ def drawn(weights, count=20000, seed=1):
 
 
 @pytest.mark.parametrize('weights', [
-    {'contribution': 2.0, 'distance': 0.3},
-    {'contribution': 1.7, 'distance': -0.8, 'companions': 0.1}])
+    {'explained': 2.0, 'distance': 0.3},
+    {'explained': 1.7, 'distance': -0.8, 'lesser_size': 0.1}])
 def test_known_weights_come_out(weights):
     made = calibrate.fit(drawn(weights))
     for (value, error), true in zip([made.constant, *made.weights.values()],
@@ -40,7 +39,7 @@ def test_known_weights_come_out(weights):
 
 
 def test_probabilities_are_frequencies_in_every_group():
-    made = calibrate.fit(drawn({'distance': 0.5, 'contribution': 1.0}))
+    made = calibrate.fit(drawn({'distance': 0.5, 'explained': 1.0}))
     assert set(made.tables) == {'all', 'ours', 'faulty'}
     for table in made.tables.values():
         for row in table:
@@ -67,23 +66,28 @@ def label(*effects, **options):
 
 def ranked(*effects, contribution=0.5):
     return {'ranking': [{'effect': name, 'contribution': contribution,
-                         'distance': 9.0, 'companions': 2} for name in effects]}
+                         'distance': 9.0, 'explained': 0.7} for name in effects]}
 
 
 def test_rows_are_those_of_the_best_set_with_the_librarys_limits():
     found = ranked('wind', 'inflow')
     found['ranking'].append({'effect': 'body_drag', 'contribution': None})
     rows = calibrate.rows_of([(label('wind'), found)])
-    assert rows.names == ('contribution', 'distance', 'companions', 'lesser')
-    row = [np.sqrt(0.5 * 80.0 / 81.0), np.log(10.0), 2.0]
-    assert rows.x == pytest.approx(np.array([[*row, 0.0], [*row, 0.0]]))
+    assert rows.names == ('explained', 'distance', 'lesser_distance', 'lesser_size')
+    assert rows.x == pytest.approx(np.array([[0.7, np.log(10.0), 0.0, 0.0]] * 2))
     assert rows.present.tolist() == [1.0, 0.0] and rows.groups == ('ours', 'ours')
 
 
 def test_an_effect_that_contributes_less_than_another_is_a_lesser_one():
     found = {'ranking': ranked('wind')['ranking'] + ranked('inflow', contribution=0.4)['ranking']}
     rows = calibrate.rows_of([(label('wind'), found)])
-    assert rows.x[:, 3] == pytest.approx([0.0, np.log(10.0)])
+    assert rows.x[:, 2] == pytest.approx([0.0, np.log(10.0)])
+    assert rows.x[:, 3] == pytest.approx([0.0, np.sqrt(0.4 * 80.0 / 81.0)])
+
+
+def test_an_effect_of_unknown_form_is_left_out():
+    found = ranked('wind', 'inflow') | {'form_unknown': ['wind']}
+    assert calibrate.rows_of([(label('wind'), found)]).present.tolist() == [0.0]
 
 
 @pytest.mark.parametrize(('truth', 'named'), [
