@@ -367,6 +367,27 @@ class Flywheel(Influence):
         return np.zeros(3), np.cross(self.momentum, now.rate)
 
 
+class Carousel(Force):
+    """
+    A hall that turns around, as one aboard a ship in a turn: all is told in its frame.
+
+    Each velocity is pushed across by Coriolis's force, and what is away from the axis outwards: H.
+    Goldstein, Classical Mechanics, 1980, chapter 4. The hall takes its air along.
+    """
+
+    def __init__(self, size, mass, rng):
+        """Draw which way it turns, and where its axis is; take its rate, rad/s."""
+        self.load = mass            # kg; an Influence has a method `mass`
+        self.rate = 0.025 * size * rng.choice([-1.0, 1.0])
+        self.axis = rng.uniform(-0.5, 0.5, 2)
+
+    def force(self, time, position, velocity):
+        """Return the force."""
+        outwards = self.rate ** 2 * (position[:2] - self.axis)
+        across = 2.0 * self.rate * np.array([velocity[1], -velocity[0]])
+        return self.load * np.array([*(outwards + across), 0.0])
+
+
 # Each with what of the vehicle its size is measured by.
 KINDS = {'periodic_force': (Periodic, 'weight'), 'tether': (Tether, 'weight'),
          'updraft': (Updraft, 'weight'), 'thrust_exponent': (Exponent, 'hover'),
@@ -377,4 +398,4 @@ KINDS = {'periodic_force': (Periodic, 'weight'), 'tether': (Tether, 'weight'),
          'branches': (Branches, 'weight', 'radius'), 'leash': (Leash, 'weight'),
          'recoil': (Recoil, 'weight', 'radius'), 'keel': (Keel, 'weight', 'radius'),
          'twisted': (Twisted, 'weight', 'radius', 'hover'),
-         'flywheel': (Flywheel, 'weight', 'radius')}
+         'flywheel': (Flywheel, 'weight', 'radius'), 'carousel': (Carousel, 'mass')}
