@@ -14,19 +14,18 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 
-from quad_ident_ros.diagnose.probability import size_shown
+from quad_ident_ros.diagnose.probability import relative_size
 from withheld.score import column_of, findings_of, named_in, reliability, TITLES
 
 Array = NDArray[np.float64]
 
 # Of a row of the ranking, as the library takes them (diagnose/probability.py), in its order; with
-# `lesser`: whether another effect contributes more.
+# `relative`: its size over that of the greatest. The library has that in each round of the
+# elimination, the ranking that of the round in which an effect is most probable.
 FEATURES: dict[str, Callable[[dict], float]] = {
     'explained': lambda row: float(row.get('explained') or 0.0),
     'distance': lambda row: float(np.log1p(row.get('distance') or 0.0)),
-    'lesser_distance': lambda row: row['lesser'] * float(np.log1p(row.get('distance') or 0.0)),
-    'lesser_size': lambda row: row['lesser'] * size_shown(row['contribution'],
-                                                          row.get('distance') or 0.0)}
+    'lesser': lambda row: (1.0 - row['relative']) * float(np.log1p(row.get('distance') or 0.0))}
 # Where an effect is as probable as not: alone, explaining all that there is, two standard errors
 # from none. Nearly all flights of development have an effect, and a user's need not: with
 # their base rate less than two standard errors would suffice.
@@ -71,8 +70,7 @@ def rows_of(pairs: Iterable[tuple[dict, dict]], features: dict = FEATURES) -> Ro
     Return the rows of the rankings of (label, diagnosis) that say whether an effect is present.
 
     Those of the best set alone, which have a contribution; not those that are neither there nor
-    not: what a label allows, and what acts like a present effect. Nor those of unknown form, whose
-    row has the share explained where something remains.
+    not: what a label allows, and what acts like a present effect.
     """
     x, present, groups = [], [], []
     for label, found in pairs:
@@ -85,10 +83,9 @@ def rows_of(pairs: Iterable[tuple[dict, dict]], features: dict = FEATURES) -> Ro
         most = max((row['contribution'] for row in ranked), default=0.0)
         for row in ranked:
             effect = row['effect']
-            if effect in (found.get('form_unknown') or ()) or effect not in there and (
-                    effect in allowed or _alike(effect, there, found)):
+            if effect not in there and (effect in allowed or _alike(effect, there, found)):
                 continue
-            known = row | {'lesser': row['contribution'] < most}
+            known = row | {'relative': relative_size(row['contribution'], most)}
             x.append([value_of(known) for value_of in features.values()])
             present.append(float(effect in there))
             groups.append(column_of(label))

@@ -99,26 +99,27 @@ def judge(bench: Bench) -> Judgement:
                if there.get(cause.effect) is cause}
     present = probabilities(bench.selection.posterior, weights, rules)
     absent = tuple(cause for cause in there.values() if present[cause.effect] < rules.present)
-    doubtful = tuple(cause for cause in model.effects if cause in absent)
-    if doubtful:
-        model, needed = _fewest(bench, model, doubtful, before, noise, present)
-        absent = tuple(cause for cause in absent if cause not in needed)
+    if set(model.effects) <= set(absent) and closes_half(model.gap, before, noise, rules):
+        model = _fewest(bench, model, before, noise, present)
+        absent = tuple(cause for cause in absent if cause not in model.effects)
     # What needs values that no vehicle has does the work of something else, which it stands for.
     untold = bench.untold(model)
     stand_ins = tuple(cause for cause in model.effects
                       if cause not in absent and bench.stands_in(model, cause, untold))
     present |= {cause.effect: rules.prior_odds for cause in stand_ins}
     material = tuple(cause for cause in model.effects if cause not in {*absent, *stand_ins})
+    # By name: forms that gave way are the usual ones here, and not in the best set.
+    gone = {cause.effect for cause in absent}
     if set(model.effects) <= set(full.effects):
-        final = full if not absent else bench.absent(full, absent)
+        improbable = tuple(cause for cause in full.effects if cause.effect in gone)
+        final = full if not improbable else bench.absent(full, improbable)
     else:
         # Where a form gave way, the best set is no model of them: what is present, but does not
         # matter, comes back beside the forms that there are.
         forms = {cause.effect for cause in model.effects}
-        small = tuple(cause for cause in full.effects
-                      if cause.effect not in forms and cause not in absent)
+        small = tuple(cause for cause in full.effects if cause.effect not in forms | gone)
         final = bench.beside(model, small, full.z) if small else model
-        improbable = tuple(cause for cause in final.effects if cause in absent)
+        improbable = tuple(cause for cause in final.effects if cause.effect in gone)
         final = bench.absent(final, improbable) if improbable else final
     fitted, final = final, bench.without_gusts(final)
     without = {cause: bench.without_gusts(one) for cause, one in without.items()}
@@ -236,7 +237,7 @@ def form_error_beside(effects: Iterable[Candidate], removed: Collection[Candidat
 
 def closes_half(after: dict, before: dict, noise: dict, rules: Rules) -> bool:
     """
-    Return whether a model closes half of the gap of some group of outputs that `after` has.
+    Return whether a model closes half of the gap of some group of outputs.
 
     What does is named, though each of its effects may be less probable than not: `unknown` in its
     place would say less than the flights do. A gap that hardly exceeds the noise does not count.
@@ -246,35 +247,21 @@ def closes_half(after: dict, before: dict, noise: dict, rules: Rules) -> bool:
                for name, share in lost_shares(after, before, before, noise, rules).items())
 
 
-def _fewest(bench: Bench, model: Model, doubtful: tuple, before: dict, noise: dict, present: dict
-            ) -> tuple[Model, tuple]:
+def _fewest(bench: Bench, model: Model, before: dict, noise: dict, present: dict) -> Model:
     """
-    Return a Model with as few of its doubtful effects as are needed, and these.
+    Return the Model with the fewest effects that closes half of the gap of some group, too.
 
-    They are needed if they close half of the gap that the other effects leave: of what would be
-    unexplained, where there are others; their errors of form are not. Of as many effects, those
-    that are most probable together. Where not even all of them do, none is needed.
-    Args: doubtful: effects that are less probable than not; present {effect: probability}.
+    Of as many effects, those that are most probable together; args: present {effect: probability}.
     """
-    slopes, groups = bench.slopes(model), set(before)
-    if len(doubtful) < len(model.effects):
-        rest = bench.without(model, doubtful, slopes).gap
-        groups, before = set(unexplained(rest, before, noise, True, bench.rules)), rest
-
-    def enough(one: Model) -> bool:
-        after = {name: gap for name, gap in one.gap.items() if name in groups}
-        return closes_half(after, before, noise, bench.rules)
-
-    if not enough(model):
-        return model, ()
-    for size in range(1, len(doubtful)):
-        fewer = [(bench.without(model, removed, slopes), removed)
-                 for removed in combinations(doubtful, len(doubtful) - size)]
-        needed = [(one, tuple(cause for cause in doubtful if cause not in removed))
-                  for one, removed in fewer if enough(one)]
-        if needed:
-            return max(needed, key=lambda pair: sum(present[cause.effect] for cause in pair[1]))
-    return model, doubtful
+    slopes = bench.slopes(model)
+    for size in range(1, len(model.effects)):
+        fewer = [bench.without(model, removed, slopes)
+                 for removed in combinations(model.effects, len(model.effects) - size)]
+        fewer = [one for one in fewer if closes_half(one.gap, before, noise, bench.rules)]
+        if fewer:
+            return max(fewer, key=lambda one: sum(present[cause.effect]
+                                                  for cause in one.effects))
+    return model
 
 
 def clear(weights: list[Weight], distance: float, rules: Rules) -> bool:

@@ -18,8 +18,8 @@ class Weight:
     contribution: the share of the closable gap that is lost; stability: how steadily it helps,
     see judgement.stability; explained: the share of its contribution that its form explains;
     gap {group: ...}: without it; distance: by how many standard errors its parameters together
-    differ from no effect, see bench.standard_errors_from_none; lesser: whether another effect
-    contributes more.
+    differ from no effect, see bench.standard_errors_from_none; relative: its size over that of the
+    greatest effect beside it, 0 to 1.
     """
 
     contribution: float
@@ -27,14 +27,24 @@ class Weight:
     explained: float
     gap: dict
     distance: float
-    lesser: bool = False
+    relative: float = 1.0
 
 
 def beside_others(weights: dict) -> dict:
-    """Return {candidate: Weight} of the effects of one model, all but the greatest as lesser."""
+    """Return {candidate: Weight} of the effects of one model, with their relative sizes."""
     most = max((one.contribution for one in weights.values()), default=0.0)
-    return {cause: replace(one, lesser=one.contribution < most)
+    return {cause: replace(one, relative=relative_size(one.contribution, most))
             for cause, one in weights.items()}
+
+
+def relative_size(contribution: float, most: float) -> float:
+    """
+    Return the size of an effect over that of the greatest, 0 to 1, by their contributions.
+
+    A contribution is as the square of a size: a gap grows with the square of what is small beside
+    the rest of it.
+    """
+    return 1.0 if contribution >= most else float(np.sqrt(max(contribution, 0.0) / most))
 
 
 def probabilities(posterior: dict, weights: dict, rules: Rules) -> dict[str, float]:
@@ -42,8 +52,8 @@ def probabilities(posterior: dict, weights: dict, rules: Rules) -> dict[str, flo
     Return {effect: probability of being present}.
 
     Of those of the best set by a logistic regression on how well their form explains them, on how
-    many standard errors they are from no effect and, beside a greater effect, on what they
-    contribute; of the others by the posterior of all sets that have them, in whichever form.
+    many standard errors they are from no effect, and on their size beside the greatest; of the
+    others by the posterior of all sets that have them, in whichever form.
     Args: posterior {candidate: ...} of the Selection; weights {candidate: Weight}.
     """
     there = {cause.effect: presence(weight, rules, rules.shift(cause.effect))
@@ -79,24 +89,10 @@ def presence(weight: Weight, rules: Rules, shift: float = 0.0) -> float:
     shift: prior knowledge of the effect, see Rules.shift.
 
     Of standard errors the logarithm counts: ten more tell little where there are thirty, for what
-    formulas are wrong by is not known well. A lesser effect may stand for what the formula of a
-    greater one is wrong by: of it they tell less, and its size tells more.
+    formulas are wrong by is not known well. They tell the less, the smaller an effect is beside
+    the greatest one: it may stand for what the formula of that is wrong by.
     """
-    base, form, far, lesser_far, lesser_size = rules.calibration
-    value = base + form * weight.explained + far * np.log1p(weight.distance) + shift
-    if weight.lesser:
-        value += (lesser_far * np.log1p(weight.distance)
-                  + lesser_size * size_shown(weight.contribution, weight.distance))
+    base, form, far, lesser = rules.calibration
+    value = (base + form * weight.explained
+             + (far + lesser * (1.0 - weight.relative)) * np.log1p(weight.distance) + shift)
     return float(1.0 / (1.0 + np.exp(-value)))
-
-
-def size_shown(contribution: float, distance: float) -> float:
-    """
-    Return the relative size of an effect, 0 to 1, by its contribution.
-
-    That is as its square: a gap grows with the square of what is small beside the rest of it. Of
-    the square of what is D standard errors from none, 1 / D^2 is expected by chance (James and
-    Stein, Fourth Berkeley Symposium, 1961); the rest counts.
-    """
-    by_chance = 1.0 / max(distance, 1.0) ** 2
-    return float(np.sqrt(np.clip(contribution, 0.0, 1.0) * (1.0 - by_chance)))

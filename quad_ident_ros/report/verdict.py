@@ -55,13 +55,7 @@ def verdict_line(found: Diagnosis) -> str:
                 f'{beside}{gusts}')
     return f'{len(named)} effects explain {share}: ' + '; '.join(
         f'{titled(row.effect)}{_law_of(found, row)}, {values_of(row)}, contribution '
-        f'{contribution_of(row)}{_doubt_of(row)}' for row in named) + beside + gusts
-
-
-def _doubt_of(row: Ranked) -> str:
-    """Return in words that an effect is less probable than not."""
-    likely = row.probability >= RULES.present
-    return '' if likely else f', uncertain (probability {row.probability:.2g})'
+        f'{contribution_of(row)}' for row in named) + beside + gusts
 
 
 def _gusts_of(found: Diagnosis) -> str:
@@ -79,8 +73,9 @@ def _others(found: Diagnosis) -> str:
     rows = [row for row in found.ranking if row.effect in found.sure]
     likely = [row.effect for row in rows if row.probability >= RULES.present]
     certain = f'; certain: {_listed(likely)}' if likely else ''
-    return certain + ''.join(f'; {titled(row.effect)}{_doubt_of(row)}'
-                             for row in rows if row.effect not in likely)
+    return certain + ''.join(
+        f'; {titled(row.effect)}, uncertain (probability {row.probability:.2g})'
+        for row in rows if row.effect not in likely)
 
 
 def size_line(found: Diagnosis) -> str:

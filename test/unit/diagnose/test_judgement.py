@@ -118,10 +118,10 @@ def test_what_is_known_apart_matters_whatever_the_error_of_form_of_others():
 
 
 @pytest.mark.parametrize(('contribution', 'distance', 'expected'), [
-    (0.08, 30.0, True), (0.02, 4.0, False), (1.0, 0.95 * RULES.shown, False)])
+    (0.08, 30.0, True), (0.02, 3.5, False), (1.0, 0.95 * RULES.shown, False)])
 def test_what_is_probable_and_some_standard_errors_from_none_is_clear(
         contribution, distance, expected):
-    weight = Weight(contribution, 5.0, 0.9, {}, distance, lesser=True)
+    weight = Weight(contribution, 5.0, 0.9, {}, distance, relative=0.3)
     assert clear([weight], distance, RULES) is expected
 
 
@@ -345,45 +345,21 @@ def test_what_flights_share_by_chance_is_their_own_where_no_effect_is_there():
     (0.2, 0.5, ['drag']),       # the only one of them that does
     (0.5, 0.5, ['drag', 'thrust'])])
 def test_uncertain_effects_are_named_as_few_as_close_half_of_the_gap(drag, thrust, expected):
-    gaps = {('drag',): drag, ('thrust',): thrust, ('drag', 'thrust'): NOISE['velocity']}
-    assert named_in_doubt(gaps, {'drag': 0.2, 'thrust': 0.4}) == expected
+    gaps = {('drag',): drag, ('thrust',): thrust}
 
-
-def named_in_doubt(gaps, doubtful, before=0.64):
-    """Return the names of those of doubtful effects {name: probability} that are needed."""
-    def model(names):
-        return SimpleNamespace(effects=tuple(Candidate(name, name, ()) for name in names),
-                               gap=of(velocity=gaps[names]))
+    def model(effects, velocity):
+        return SimpleNamespace(effects=tuple(SimpleNamespace(effect=name) for name in effects),
+                               gap=of(velocity=velocity))
 
     def without(whole, removed, _):
         gone = [one.effect for one in removed]
-        return model(tuple(one.effect for one in whole.effects if one.effect not in gone))
+        kept = tuple(one.effect for one in whole.effects if one.effect not in gone)
+        return model(kept, gaps[kept])
 
     bench = SimpleNamespace(slopes=lambda _: None, without=without, rules=RULES)
-    whole = model(max(gaps, key=len))
-    causes = tuple(cause for cause in whole.effects if cause.effect in doubtful)
-    fewest, needed = _fewest(bench, whole, causes, of(velocity=before), NOISE, doubtful)
-    assert {*needed} == {*causes} & {*fewest.effects} or not needed
-    return [cause.effect for cause in needed]
-
-
-@pytest.mark.parametrize(('rest', 'expected'), [
-    (0.5, ['drag']),
-    # Less than half of what the wind closes: its formula may be wrong by that.
-    (0.25, [])])
-def test_beside_others_an_uncertain_effect_is_named_where_something_is_unexplained(rest, expected):
-    gaps = {('wind',): rest, ('drag', 'wind'): NOISE['velocity']}
-    assert named_in_doubt(gaps, {'drag': 0.4}) == expected
-
-
-def test_beside_others_it_is_not_named_unless_it_explains_half_of_that():
-    assert named_in_doubt({('wind',): 0.5, ('drag', 'wind'): 0.4}, {'drag': 0.4}) == []
-
-
-def test_beside_others_as_few_uncertain_effects_are_named_as_explain_half_of_that():
-    gaps = {('wind',): 0.5, ('drag', 'wind'): 0.2, ('thrust', 'wind'): 0.4,
-            ('drag', 'thrust', 'wind'): NOISE['velocity']}
-    assert named_in_doubt(gaps, {'drag': 0.2, 'thrust': 0.4}) == ['drag']
+    whole = model(('drag', 'thrust'), NOISE['velocity'])
+    fewest = _fewest(bench, whole, of(velocity=0.64), NOISE, {'drag': 0.2, 'thrust': 0.4})
+    assert [cause.effect for cause in fewest.effects] == expected
 
 
 @pytest.mark.slow

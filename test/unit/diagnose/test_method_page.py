@@ -18,8 +18,8 @@ def test_every_threshold_stands_in_the_table(name):
 
 
 def test_the_weights_of_the_probability_are_those_of_the_formula():
-    base, form, far, lesser_far, lesser_size = RULES.calibration
-    assert (f'ln(p / (1 - p)) = {base:g} + {form:g} E + ({far:g} - {-lesser_far:g} B) ln(1 + D) '
-            f'+ {lesser_size:g} B sqrt(C (1 - 1 / D^2))') in PAGE
+    base, form, far, lesser = RULES.calibration
+    assert (f'ln(p / (1 - p)) = {base:g} + {form:g} E '
+            f'+ ({far:g} - {-lesser:g} (1 - q)) ln(1 + D)') in PAGE
     weights = ', '.join(f'{weight:g}' for weight in RULES.calibration)
     assert f'| `calibration` | {weights} |' in PAGE

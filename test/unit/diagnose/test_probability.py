@@ -12,62 +12,59 @@ from quad_ident_ros.diagnose.probability import (
     beside_others,
     presence,
     probabilities,
-    size_shown,
+    relative_size,
     told_apart,
     Weight,
 )
 from quad_ident_ros.diagnose.rules import RULES
 
 Named = namedtuple('Named', 'effect form')
-RULE = replace(RULES, calibration=(-1.0, 1.5, 2.0, -0.7, 3.0))
+RULE = replace(RULES, calibration=(-1.0, 1.5, 2.0, -0.7))
 
 
-def of(contribution, distance, explained=0.9, lesser=False):
-    return Weight(contribution, 5.0, explained, {}, distance, lesser)
+def of(contribution, distance, explained=0.9, relative=1.0):
+    return Weight(contribution, 5.0, explained, {}, distance, relative)
 
 
-@pytest.mark.parametrize(('contribution', 'distance', 'size'),
-                         [(1.0, 0.0, 0.0), (0.25, 1.0, 0.0), (0.25, 2.0, 0.5 * 0.75 ** 0.5),
-                          (0.01, 1e4, 0.1), (-1.0, 9.0, 0.0), (4.0, 1e6, 1.0)])
+@pytest.mark.parametrize('distance', [0.0, 2.0, 1e4])
 @pytest.mark.parametrize('explained', [0.0, 0.8])
-def test_it_is_the_logistic_function_of_a_weighted_sum(contribution, distance, size, explained):
-    """Of the square of what is twice its standard error, a quarter is by chance."""
-    assert size_shown(contribution, distance) == pytest.approx(size, rel=1e-6)
-    value = -1.0 + 1.5 * explained + 2.0 * np.log(1.0 + distance)
-    assert presence(of(contribution, distance, explained), RULE) == pytest.approx(
-        1.0 / (1.0 + np.exp(-value)))
-    value += -0.7 * np.log(1.0 + distance) + 3.0 * size
-    assert presence(of(contribution, distance, explained, lesser=True), RULE) == pytest.approx(
+@pytest.mark.parametrize('relative', [0.0, 0.3, 1.0])
+def test_it_is_the_logistic_function_of_a_weighted_sum(distance, explained, relative):
+    value = -1.0 + 1.5 * explained + (2.0 - 0.7 * (1.0 - relative)) * np.log(1.0 + distance)
+    assert presence(of(0.4, distance, explained, relative), RULE) == pytest.approx(
         1.0 / (1.0 + np.exp(-value)))
 
 
-@pytest.mark.parametrize('lesser', [False, True])
-def test_more_of_anything_that_speaks_for_it_makes_it_more_probable(lesser):
-    base = presence(of(0.1, 5.0, 0.5, lesser), RULES)
-    assert presence(of(0.1, 9.0, 0.5, lesser), RULES) > base
-    assert presence(of(0.1, 5.0, 0.9, lesser), RULES) > base
-    assert (presence(of(0.5, 5.0, 0.5, lesser), RULES) > base) is lesser
-
-
-def test_what_is_small_beside_a_greater_effect_is_less_probable_than_by_itself():
-    assert presence(of(0.02, 9.0, lesser=True), RULES) < presence(of(0.02, 9.0), RULES)
+def test_more_of_anything_that_speaks_for_it_makes_it_more_probable():
+    base = presence(of(0.1, 5.0, 0.5, 0.4), RULES)
+    assert presence(of(0.1, 9.0, 0.5, 0.4), RULES) > base
+    assert presence(of(0.1, 5.0, 0.9, 0.4), RULES) > base
+    assert presence(of(0.1, 5.0, 0.5, 0.6), RULES) > base
 
 
 def test_all_that_there_is_at_two_standard_errors_is_as_probable_as_not():
     assert presence(of(1.0, 2.0, explained=1.0), RULES) == pytest.approx(0.5, abs=0.005)
 
 
-def test_all_but_the_greatest_are_lesser_ones():
-    found = beside_others({'a': of(0.3, 9.0), 'b': of(0.5, 2.0), 'c': of(0.1, 5.0)})
-    assert [found[name].lesser for name in 'abc'] == [True, False, True]
-    assert not beside_others({'a': of(0.3, 9.0)})['a'].lesser
+@pytest.mark.parametrize(('contribution', 'most', 'size'), [
+    (0.5, 0.5, 1.0), (0.125, 0.5, 0.5), (0.02, 2.0, 0.1), (0.0, 0.5, 0.0), (-0.1, 0.5, 0.0),
+    (-0.1, -0.1, 1.0), (0.0, 0.0, 1.0)])
+def test_a_small_effect_makes_a_gap_by_the_square_of_its_size(contribution, most, size):
+    assert relative_size(contribution, most) == pytest.approx(size)
+
+
+def test_sizes_are_beside_the_greatest_effect():
+    found = beside_others({'a': of(0.18, 9.0), 'b': of(0.5, 2.0), 'c': of(-0.1, 5.0)})
+    assert [found[name].relative for name in 'abc'] == pytest.approx([0.6, 1.0, 0.0])
+    assert beside_others({'a': of(0.3, 9.0)})['a'].relative == 1.0
+    assert beside_others({}) == {}
 
 
 @pytest.mark.parametrize('contribution', [-1.0, 0.0, 1e6])
 @pytest.mark.parametrize('distance', [0.0, 1e3])
-@pytest.mark.parametrize('lesser', [False, True])
-def test_nothing_is_certain(contribution, distance, lesser):
-    assert 0.0 < presence(of(contribution, distance, lesser=lesser), RULES) < 1.0
+@pytest.mark.parametrize('relative', [0.0, 1.0])
+def test_nothing_is_certain(contribution, distance, relative):
+    assert 0.0 < presence(of(contribution, distance, relative=relative), RULES) < 1.0
 
 
 def test_what_is_not_in_the_best_set_keeps_its_posterior_summed_over_its_forms():

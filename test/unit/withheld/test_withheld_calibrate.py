@@ -28,7 +28,7 @@ def drawn(weights, count=20000, seed=1):
 
 @pytest.mark.parametrize('weights', [
     {'explained': 2.0, 'distance': 0.3},
-    {'explained': 1.7, 'distance': -0.8, 'lesser_size': 0.1}])
+    {'explained': 1.7, 'distance': -0.8, 'lesser': 0.1}])
 def test_known_weights_come_out(weights):
     made = calibrate.fit(drawn(weights))
     for (value, error), true in zip([made.constant, *made.weights.values()],
@@ -73,21 +73,15 @@ def test_rows_are_those_of_the_best_set_with_the_librarys_limits():
     found = ranked('wind', 'inflow')
     found['ranking'].append({'effect': 'body_drag', 'contribution': None})
     rows = calibrate.rows_of([(label('wind'), found)])
-    assert rows.names == ('explained', 'distance', 'lesser_distance', 'lesser_size')
-    assert rows.x == pytest.approx(np.array([[0.7, np.log(10.0), 0.0, 0.0]] * 2))
+    assert rows.names == ('explained', 'distance', 'lesser')
+    assert rows.x == pytest.approx(np.array([[0.7, np.log(10.0), 0.0]] * 2))
     assert rows.present.tolist() == [1.0, 0.0] and rows.groups == ('ours', 'ours')
 
 
-def test_an_effect_that_contributes_less_than_another_is_a_lesser_one():
-    found = {'ranking': ranked('wind')['ranking'] + ranked('inflow', contribution=0.4)['ranking']}
+def test_an_effect_counts_by_its_size_beside_the_greatest():
+    found = {'ranking': ranked('wind')['ranking'] + ranked('inflow', contribution=0.18)['ranking']}
     rows = calibrate.rows_of([(label('wind'), found)])
-    assert rows.x[:, 2] == pytest.approx([0.0, np.log(10.0)])
-    assert rows.x[:, 3] == pytest.approx([0.0, np.sqrt(0.4 * 80.0 / 81.0)])
-
-
-def test_an_effect_of_unknown_form_is_left_out():
-    found = ranked('wind', 'inflow') | {'form_unknown': ['wind']}
-    assert calibrate.rows_of([(label('wind'), found)]).present.tolist() == [0.0]
+    assert rows.x[:, 2] == pytest.approx([0.0, 0.4 * np.log(10.0)])
 
 
 @pytest.mark.parametrize(('truth', 'named'), [
