@@ -108,18 +108,16 @@ def judge(bench: Bench) -> Judgement:
                       if cause not in absent and bench.stands_in(model, cause, untold))
     present |= {cause.effect: rules.prior_odds for cause in stand_ins}
     material = tuple(cause for cause in model.effects if cause not in {*absent, *stand_ins})
-    # By name: forms that gave way are the usual ones here, and not in the best set.
-    gone = {cause.effect for cause in absent}
     if set(model.effects) <= set(full.effects):
-        improbable = tuple(cause for cause in full.effects if cause.effect in gone)
+        improbable = in_any_form(full.effects, absent)
         final = full if not improbable else bench.absent(full, improbable)
     else:
         # Where a form gave way, the best set is no model of them: what is present, but does not
         # matter, comes back beside the forms that there are.
-        forms = {cause.effect for cause in model.effects}
-        small = tuple(cause for cause in full.effects if cause.effect not in forms | gone)
+        elsewhere = in_any_form(full.effects, (*model.effects, *absent))
+        small = tuple(cause for cause in full.effects if cause not in elsewhere)
         final = bench.beside(model, small, full.z) if small else model
-        improbable = tuple(cause for cause in final.effects if cause.effect in gone)
+        improbable = in_any_form(final.effects, absent)
         final = bench.absent(final, improbable) if improbable else final
     fitted, final = final, bench.without_gusts(final)
     without = {cause: bench.without_gusts(one) for cause, one in without.items()}
@@ -143,6 +141,13 @@ def in_forms_of(effects: Iterable[Candidate], causes: Iterable[Candidate]
     """
     there = {cause.effect: cause for cause in effects}
     return tuple(there.get(cause.effect, cause) for cause in causes)
+
+
+def in_any_form(effects: Iterable[Candidate], causes: Iterable[Candidate]
+                ) -> tuple[Candidate, ...]:
+    """Return those of some effects that are among causes, in whichever form these have them."""
+    names = {cause.effect for cause in causes}
+    return tuple(cause for cause in effects if cause.effect in names)
 
 
 def _nominal_ends(bench: Bench, model: Model) -> tuple:

@@ -20,6 +20,7 @@ from quad_ident_ros.diagnose.judgement import (
     clear,
     closes_half,
     form_error_beside,
+    in_any_form,
     in_forms_of,
     lost_shares,
     matters,
@@ -53,6 +54,15 @@ def test_what_is_judged_has_the_form_that_the_last_model_has_it_in():
     drag = Candidate('rotor_drag', 'rotor_drag', (2,))
     assert in_forms_of((usual,), (drag, hayden)) == (drag, usual)
     assert in_forms_of((), (hayden,)) == (hayden,)
+
+
+def test_what_is_taken_out_is_an_effect_in_whichever_form():
+    """The usual form had taken the place of hayden when the effect was judged improbable."""
+    hayden, usual = (Candidate('ground_effect', f'ground_effect {form}', (k,), form)
+                     for k, form in enumerate(('hayden', 'cheeseman_bennett')))
+    drag = Candidate('rotor_drag', 'rotor_drag', (2,))
+    assert in_any_form((hayden, drag), (usual,)) == (hayden,)
+    assert in_any_form((drag,), (usual,)) == ()
 
 
 def test_the_tolerance_is_a_share_of_the_noise_but_no_less_than_its_floor():
