@@ -25,7 +25,8 @@ Array = NDArray[np.float64]
 FEATURES: dict[str, Callable[[dict], float]] = {
     'explained': lambda row: float(row.get('explained') or 0.0),
     'distance': lambda row: float(np.log1p(row.get('distance') or 0.0)),
-    'lesser': lambda row: (1.0 - row['relative']) * float(np.log1p(row.get('distance') or 0.0))}
+    'lesser': lambda row: (1.0 - row['relative']) * float(np.log1p(row.get('distance') or 0.0)),
+    'companions': lambda row: float(row.get('companions') or 0.0)}
 # Where an effect is as probable as not: alone, explaining all that there is, two standard errors
 # from none. Nearly all flights of development have an effect, and a user's need not: with
 # their base rate less than two standard errors would suffice.

@@ -79,7 +79,7 @@ def judge(bench: Bench) -> Judgement:
         without |= alone
         for cause, weight in beside_others(
                 {cause: _weight(model, one, before, noise, bench.distance(model, (cause,)), rules)
-                 for cause, one in alone.items()}).items():
+                 for cause, one in alone.items()}, rules).items():
             # Beside effects that do not matter it may show more clearly, or less.
             weights[cause] = max(weights.get(cause, weight), weight,
                                  key=lambda each: presence(each, rules))

@@ -19,7 +19,7 @@ class Weight:
     see judgement.stability; explained: the share of its contribution that its form explains;
     gap {group: ...}: without it; distance: by how many standard errors its parameters together
     differ from no effect, see bench.standard_errors_from_none; relative: its size over that of the
-    greatest effect beside it, 0 to 1.
+    greatest effect beside it, 0 to 1; companions: how many other effects clearly contribute.
     """
 
     contribution: float
@@ -28,12 +28,22 @@ class Weight:
     gap: dict
     distance: float
     relative: float = 1.0
+    companions: int = 0
 
 
-def beside_others(weights: dict) -> dict:
-    """Return {candidate: Weight} of the effects of one model, with their relative sizes."""
+def beside_others(weights: dict, rules: Rules) -> dict:
+    """
+    Return {candidate: Weight} of the effects of one model, each with what the others contribute.
+
+    How likely an effect is before looking at it shows in the number of others present (Scott and
+    Berger, Annals of Statistics 38, 2010).
+    """
+    contribution, steadiness = rules.companion
+    clear = {cause for cause, one in weights.items()
+             if one.contribution >= contribution and one.stability >= steadiness}
     most = max((one.contribution for one in weights.values()), default=0.0)
-    return {cause: replace(one, relative=relative_size(one.contribution, most))
+    return {cause: replace(one, companions=len(clear - {cause}),
+                           relative=relative_size(one.contribution, most))
             for cause, one in weights.items()}
 
 
@@ -52,8 +62,8 @@ def probabilities(posterior: dict, weights: dict, rules: Rules) -> dict[str, flo
     Return {effect: probability of being present}.
 
     Of those of the best set by a logistic regression on how well their form explains them, on how
-    many standard errors they are from no effect, and on their size beside the greatest; of the
-    others by the posterior of all sets that have them, in whichever form.
+    many standard errors they are from no effect, on their size beside the greatest and on their
+    companions; of the others by the posterior of all sets that have them, in whichever form.
     Args: posterior {candidate: ...} of the Selection; weights {candidate: Weight}.
     """
     there = {cause.effect: presence(weight, rules, rules.shift(cause.effect))
@@ -92,7 +102,8 @@ def presence(weight: Weight, rules: Rules, shift: float = 0.0) -> float:
     formulas are wrong by is not known well. They tell the less, the smaller an effect is beside
     the greatest one: it may stand for what the formula of that is wrong by.
     """
-    base, form, far, lesser = rules.calibration
+    base, form, far, lesser, beside = rules.calibration
     value = (base + form * weight.explained
-             + (far + lesser * (1.0 - weight.relative)) * np.log1p(weight.distance) + shift)
+             + (far + lesser * (1.0 - weight.relative)) * np.log1p(weight.distance)
+             + beside * weight.companions + shift)
     return float(1.0 / (1.0 + np.exp(-value)))

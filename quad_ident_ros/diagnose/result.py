@@ -46,7 +46,8 @@ class Ranked:
     of its contribution that this law explains, or None; contribution: the share of the closable
     gap that is lost without it, everything else refitted, and without {group: gap} then;
     stability: how steadily it helps; distance: by how many standard errors its parameters together
-    differ from no effect; gap_after {group: gap} on the flight held out with this effect alone.
+    differ from no effect; companions: how many others clearly contribute beside it;
+    gap_after {group: gap} on the flight held out with this effect alone.
     """
 
     effect: str
@@ -56,6 +57,7 @@ class Ranked:
     contribution: float | None
     stability: float | None
     distance: float | None
+    companions: int | None
     parameters: dict
     gap_after: dict
     without: dict | None

@@ -69,11 +69,13 @@ class Rules:
         of one vehicle differ by some tens of percent.
     Probability:
       calibration: constant, and weights of the share that the form explains, of the logarithm of
-        one plus the standard errors from no effect, and of that logarithm times what the size
-        lacks of that of the greatest effect, in the log odds of being present, fitted to the
-        flights of development of the withheld check; the constant is that by which what explains
-        all that there is, two standard errors from none, is as probable as not: docs/method.md has
-        the command.
+        one plus the standard errors from no effect, of that logarithm times what the size lacks of
+        that of the greatest effect, and of the companions, in the log odds of being present,
+        fitted to the flights of development of the withheld check; the constant is that by which
+        what explains all that there is, two standard errors from none, is as probable as not:
+        docs/method.md has the command.
+      companion: contribution and stability (standard errors) from which on another effect clearly
+        contributes.
     Gap (see gap.py):
       horizon: s ahead at which predictions are judged: the length of the rollouts that are fitted.
         near_horizon: that of inertial flights: what the air does is not modelled there, and soon
@@ -155,7 +157,8 @@ class Rules:
     half: float = 0.5
     doubt: float = 0.12
     instead: float = 2.0
-    calibration: tuple[float, float, float, float] = (-3.57, 1.41, 1.97, -1.08)
+    calibration: tuple[float, float, float, float, float] = (-3.86, 1.85, 1.83, -1.19, 0.343)
+    companion: tuple[float, float] = (0.1, 3.0)
     stand_in: float = 0.5
     tied: float = 0.9
     hidden: float = 1.0

@@ -167,9 +167,10 @@ def _ranking(bench: Bench, judged: Judgement, causes: tuple, total: dict,
             cause.effect, total[cause.effect], weight and cause.form,
             form_unknown.get(cause.effect, weight and weight.explained),
             weight and weight.contribution, weight and weight.stability,
-            weight and weight.distance, parameters, gap_after, weight and weight.gap)
+            weight and weight.distance, weight and weight.companions, parameters, gap_after,
+            weight and weight.gap)
     for name in ruled_out:
-        rows[name] = Ranked(name, 0.0, None, None, None, None, None, {}, before, None)
+        rows[name] = Ranked(name, 0.0, None, None, None, None, None, None, {}, before, None)
     named = {cause.effect for cause in judged.material}
     return tuple(sorted(rows.values(), key=lambda row: (
         row.effect not in named, -(row.contribution or 0.0) if row.effect in named

@@ -50,7 +50,7 @@ def diagnosis(**changes):
     closed = ShareClosed(gap['after'], 1.0, 0.01, 'velocity')
     return replace(Diagnosis(
         vehicle=load_vehicle('hummingbird'), verdict=('rotor_drag',), minor=(),
-        ranking=(Ranked('rotor_drag', 0.99, 'by_speed', 1.0, 1.0, 1.0, 60.0,
+        ranking=(Ranked('rotor_drag', 0.99, 'by_speed', 1.0, 1.0, 1.0, 60.0, 0,
                         {'coefficient': Value(0.2, 0.0015, 'kg/s')}, gap['after'],
                         gap['before']),),
         where=(), gap=Gap(0.5, UNITS, **gap, before_interval={}, after_interval={}, closed=1.0,

@@ -18,8 +18,8 @@ def test_every_threshold_stands_in_the_table(name):
 
 
 def test_the_weights_of_the_probability_are_those_of_the_formula():
-    base, form, far, lesser = RULES.calibration
+    base, form, far, lesser, beside = RULES.calibration
     assert (f'ln(p / (1 - p)) = {base:g} + {form:g} E '
-            f'+ ({far:g} - {-lesser:g} (1 - q)) ln(1 + D)') in PAGE
+            f'+ ({far:g} - {-lesser:g} (1 - q)) ln(1 + D) + {beside:g} K') in PAGE
     weights = ', '.join(f'{weight:g}' for weight in RULES.calibration)
     assert f'| `calibration` | {weights} |' in PAGE

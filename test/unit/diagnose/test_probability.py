@@ -19,19 +19,20 @@ from quad_ident_ros.diagnose.probability import (
 from quad_ident_ros.diagnose.rules import RULES
 
 Named = namedtuple('Named', 'effect form')
-RULE = replace(RULES, calibration=(-1.0, 1.5, 2.0, -0.7))
+RULE = replace(RULES, calibration=(-1.0, 1.5, 2.0, -0.7, 0.3))
 
 
-def of(contribution, distance, explained=0.9, relative=1.0):
-    return Weight(contribution, 5.0, explained, {}, distance, relative)
+def of(contribution, distance, explained=0.9, relative=1.0, companions=0, stability=5.0):
+    return Weight(contribution, stability, explained, {}, distance, relative, companions)
 
 
 @pytest.mark.parametrize('distance', [0.0, 2.0, 1e4])
 @pytest.mark.parametrize('explained', [0.0, 0.8])
-@pytest.mark.parametrize('relative', [0.0, 0.3, 1.0])
-def test_it_is_the_logistic_function_of_a_weighted_sum(distance, explained, relative):
-    value = -1.0 + 1.5 * explained + (2.0 - 0.7 * (1.0 - relative)) * np.log(1.0 + distance)
-    assert presence(of(0.4, distance, explained, relative), RULE) == pytest.approx(
+@pytest.mark.parametrize(('relative', 'companions'), [(0.0, 3), (0.3, 1), (1.0, 0)])
+def test_it_is_the_logistic_function_of_a_weighted_sum(distance, explained, relative, companions):
+    value = (-1.0 + 1.5 * explained + (2.0 - 0.7 * (1.0 - relative)) * np.log(1.0 + distance)
+             + 0.3 * companions)
+    assert presence(of(0.4, distance, explained, relative, companions), RULE) == pytest.approx(
         1.0 / (1.0 + np.exp(-value)))
 
 
@@ -40,6 +41,7 @@ def test_more_of_anything_that_speaks_for_it_makes_it_more_probable():
     assert presence(of(0.1, 9.0, 0.5, 0.4), RULES) > base
     assert presence(of(0.1, 5.0, 0.9, 0.4), RULES) > base
     assert presence(of(0.1, 5.0, 0.5, 0.6), RULES) > base
+    assert presence(of(0.1, 5.0, 0.5, 0.4, 1), RULES) > base
 
 
 def test_all_that_there_is_at_two_standard_errors_is_as_probable_as_not():
@@ -54,10 +56,17 @@ def test_a_small_effect_makes_a_gap_by_the_square_of_its_size(contribution, most
 
 
 def test_sizes_are_beside_the_greatest_effect():
-    found = beside_others({'a': of(0.18, 9.0), 'b': of(0.5, 2.0), 'c': of(-0.1, 5.0)})
+    found = beside_others({'a': of(0.18, 9.0), 'b': of(0.5, 2.0), 'c': of(-0.1, 5.0)}, RULES)
     assert [found[name].relative for name in 'abc'] == pytest.approx([0.6, 1.0, 0.0])
-    assert beside_others({'a': of(0.3, 9.0)})['a'].relative == 1.0
-    assert beside_others({}) == {}
+    assert beside_others({'a': of(0.3, 9.0)}, RULES)['a'].relative == 1.0
+    assert beside_others({}, RULES) == {}
+
+
+def test_companions_are_the_others_that_clearly_contribute():
+    weights = {'a': of(0.5, 0.9), 'b': of(0.3, 0.9), 'c': of(0.3, 0.9, stability=2.0),
+               'd': of(0.05, 0.9)}
+    found = beside_others(weights, RULES)
+    assert [found[name].companions for name in 'abcd'] == [1, 1, 2, 2]
 
 
 @pytest.mark.parametrize('contribution', [-1.0, 0.0, 1e6])

@@ -66,15 +66,16 @@ def label(*effects, **options):
 
 def ranked(*effects, contribution=0.5):
     return {'ranking': [{'effect': name, 'contribution': contribution,
-                         'distance': 9.0, 'explained': 0.7} for name in effects]}
+                         'distance': 9.0, 'explained': 0.7, 'companions': 2}
+                        for name in effects]}
 
 
 def test_rows_are_those_of_the_best_set_with_the_librarys_limits():
     found = ranked('wind', 'inflow')
     found['ranking'].append({'effect': 'body_drag', 'contribution': None})
     rows = calibrate.rows_of([(label('wind'), found)])
-    assert rows.names == ('explained', 'distance', 'lesser')
-    assert rows.x == pytest.approx(np.array([[0.7, np.log(10.0), 0.0]] * 2))
+    assert rows.names == ('explained', 'distance', 'lesser', 'companions')
+    assert rows.x == pytest.approx(np.array([[0.7, np.log(10.0), 0.0, 2.0]] * 2))
     assert rows.present.tolist() == [1.0, 0.0] and rows.groups == ('ours', 'ours')
 
 
