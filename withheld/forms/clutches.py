@@ -50,6 +50,21 @@ class LoosePropellers(Influence):
         raise NotImplementedError
 
 
+class PartlyLoosePropellers(LoosePropellers):
+    """Propellers of which a share OWN turns with the hubs, and the rest follows by a law."""
+
+    OWN = 0.0           # of the inertia
+
+    def alter(self, true, params):
+        """Set the inertia that turns with the hubs."""
+        true['rotor_inertia'] = self.OWN * self.inertia
+
+    def wrench(self, now):
+        """Return the moment of the loose parts."""
+        force, moment = super().wrench(now)
+        return force, (1.0 - self.OWN) * moment
+
+
 class Freewheeling(LoosePropellers):
     """
     Propellers that a clutch takes along when the motor turns faster, and lets run on otherwise.

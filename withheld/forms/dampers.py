@@ -4,10 +4,10 @@
 
 import numpy as np
 
-from withheld.forms.clutches import LoosePropellers
+from withheld.forms.clutches import PartlyLoosePropellers
 
 
-class Damped(LoosePropellers):
+class Damped(PartlyLoosePropellers):
     """
     Propellers with a loose ring each, which dry friction takes along: Lanchester's damper.
 
@@ -17,15 +17,6 @@ class Damped(LoosePropellers):
 
     OWN = 0.25                  # of the inertia, without the ring
     TIME, HOLDS = 0.01, 0.25    # s, below the limit; 1/s, of the speed in hover
-
-    def alter(self, true, params):
-        """Set the inertia that does not slip."""
-        true['rotor_inertia'] = self.OWN * self.inertia
-
-    def wrench(self, now):
-        """Return the moment of the rings."""
-        force, moment = super().wrench(now)
-        return force, (1.0 - self.OWN) * moment
 
     def _slope(self):
         """Return the slopes (n,) of the speeds of the rings, rad/s^2."""

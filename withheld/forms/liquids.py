@@ -4,10 +4,10 @@
 
 import numpy as np
 
-from withheld.forms.clutches import LoosePropellers
+from withheld.forms.clutches import PartlyLoosePropellers
 
 
-class Filled(LoosePropellers):
+class Filled(PartlyLoosePropellers):
     """
     Propellers with a ring of liquid each, which balances them and turns along a little later.
 
@@ -18,22 +18,13 @@ class Filled(LoosePropellers):
 
     OWN, TIME = 0.2, 0.2        # of the inertia, without the liquid; s, at the speed of hover
 
-    def alter(self, true, params):
-        """Set the inertia that turns with the hubs."""
-        true['rotor_inertia'] = self.OWN * self.inertia
-
-    def wrench(self, now):
-        """Return the moment of the liquid."""
-        force, moment = super().wrench(now)
-        return force, (1.0 - self.OWN) * moment
-
     def _slope(self):
         """Return the slopes (n,) of the speeds of the liquid, rad/s^2."""
         root = np.sqrt(np.maximum(self._blades, 0.0) / self.hover)
         return root * (self._hubs - self._blades) / self.TIME
 
 
-class Wheeled(LoosePropellers):
+class Wheeled(PartlyLoosePropellers):
     """
     Propellers below which a free wheel turns in the wake, that takes the swirl out of it.
 
@@ -43,14 +34,10 @@ class Wheeled(LoosePropellers):
 
     OWN, TIME = 0.2, 0.3        # of the momentum in hover, of the propeller; s, there
 
-    def alter(self, true, params):
-        """Set the inertia of the propellers."""
-        true['rotor_inertia'] = self.OWN * self.inertia
-
     def wrench(self, now):
         """Return the moment that it takes to turn the axes of the wheels along."""
         force, (x, y, _) = super().wrench(now)
-        return force, (1.0 - self.OWN) * np.array([x, y, 0.0])
+        return force, np.array([x, y, 0.0])
 
     def _slope(self):
         """Return the slopes (n,) of the speeds of the wheels, of their ratio, rad/s^2."""
