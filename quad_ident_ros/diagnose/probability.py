@@ -99,8 +99,8 @@ def presence(weight: Weight, rules: Rules, shift: float = 0.0) -> float:
     shift: prior knowledge of the effect, see Rules.shift.
 
     Of standard errors the logarithm counts: ten more tell little where there are thirty, for what
-    formulas are wrong by is not known well. They tell the less, the smaller an effect is beside
-    the greatest one: it may stand for what the formula of that is wrong by.
+    formulas are wrong by is not known well. They tell less of an effect that is small beside the
+    greatest one: it may stand for what the formula of that one is wrong by.
     """
     base, form, far, lesser, beside = rules.calibration
     value = (base + form * weight.explained

@@ -69,10 +69,10 @@ class Rules:
         of one vehicle differ by some tens of percent.
     Probability:
       calibration: constant, and weights of the share that the form explains, of the logarithm of
-        one plus the standard errors from no effect, of that logarithm times what the size lacks of
-        that of the greatest effect, and of the companions, in the log odds of being present,
-        fitted to the flights of development of the withheld check; the constant is that by which
-        what explains all that there is, two standard errors from none, is as probable as not:
+        one plus the standard errors from no effect, of that logarithm times one minus the size
+        relative to the greatest effect, and of the companions, in the log odds of being present,
+        fitted to the flights of development of the withheld check. With the constant, an effect
+        that explains all that there is, two standard errors from none, is as probable as not:
         docs/method.md has the command.
       companion: contribution and stability (standard errors) from which on another effect clearly
         contributes.
