@@ -54,6 +54,25 @@ def other_actuators(best: tuple, causes: Sequence[Candidate], z: np.ndarray, veh
     return found
 
 
+def other_ratios(best: tuple, causes: Sequence[Candidate], z: np.ndarray, vehicle: Vehicle
+                 ) -> list[tuple[tuple, np.ndarray]]:
+    """
+    Return [(set, vector)] with the usual form of another effect for one of a set of its ratio.
+
+    From a thrust that is 10 % off, slopes say that a mass in its place moves a vehicle otherwise.
+    """
+    found = []
+    for cause in effects_in(best):
+        ratio = EFFECTS[cause.effect].ratio
+        for other in causes:
+            if ratio and other.usual and other.effect != cause.effect and ratio == EFFECTS[
+                    other.effect].ratio:
+                start = z.copy()
+                start[list(cause.columns)] = nominal(vehicle)[list(cause.columns)]
+                found.append((key_of((other, *(one for one in best if one is not cause))), start))
+    return found
+
+
 def _swapped(chosen: tuple, top: tuple) -> bool:
     """Return whether sets differ by one effect, in whose place there is another candidate."""
     apart = set(chosen) ^ set(top)

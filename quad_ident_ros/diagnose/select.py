@@ -27,7 +27,7 @@ from quad_ident_ros.diagnose.frame import (
     frame_at,
 )
 from quad_ident_ros.diagnose.linear_model import fitted_around, quadratic_at, rows_of
-from quad_ident_ros.diagnose.promising import other_actuators, promising, REFITS
+from quad_ident_ros.diagnose.promising import other_actuators, other_ratios, promising, REFITS
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.diagnose.selection import posteriors, Selection
 from quad_ident_ros.diagnose.standard_errors import joint_of
@@ -280,7 +280,8 @@ class _Search:
             self.fit(chosen, start, everyone, self.frame.slopes.starts)
         best = self.best_key()
         fit = self.tried[best]
-        for chosen, start in other_actuators(best, self.causes, fit.z, self.vehicle):
+        for chosen, start in (*other_actuators(best, self.causes, fit.z, self.vehicle),
+                              *other_ratios(best, self.causes, fit.z, self.vehicle)):
             if chosen not in self.tried:
                 self.fit(chosen, start, fit.nuisances, fit.starts)
 

@@ -12,7 +12,7 @@ from quad_ident_ros.diagnose import select as selecting
 from quad_ident_ros.diagnose.candidates import Candidate, candidates, nuisance_candidates
 from quad_ident_ros.diagnose.evidence import key_of
 from quad_ident_ros.diagnose.fitted import Fitted, refitted
-from quad_ident_ros.diagnose.promising import other_actuators
+from quad_ident_ros.diagnose.promising import other_actuators, other_ratios
 from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.diagnose.select import _Search
 from quad_ident_ros.diagnose.selection import posteriors, Selection
@@ -279,10 +279,10 @@ def test_all_that_flights_have_alike_leaves_their_nuisances():
         assert means == pytest.approx(np.zeros(len(means)), abs=0.1)
 
 
-def test_from_a_delay_that_does_the_work_of_a_lag_the_lag_is_found():
-    vehicle, lag = load_vehicle('hummingbird'), 0.05
-    record = fly_closed_loop(vehicle, {'motor_lag': {'time_constant': lag}}, 'lissajous',
-                             duration=12.0, seed=1, noise=SENSORS['mocap_imu'])
+def usual_fits(vehicle, effects):
+    """Return the usual candidates by effect, and how a set of them is fitted to a flight."""
+    record = fly_closed_loop(vehicle, effects, 'lissajous', duration=12.0, seed=1,
+                             noise=SENSORS['mocap_imu'])
     flights = [flight_of(track_of(record, vehicle))]
     causes = {}
     for cause in candidates(flights, vehicle, RULES):
@@ -291,6 +291,12 @@ def test_from_a_delay_that_does_the_work_of_a_lag_the_lag_is_found():
     def fit(z, chosen, noise=None):
         return refitted(flights, vehicle, z, chosen, noise, NuisanceValues.of((), 1), None)
 
+    return causes, fit
+
+
+def test_from_a_delay_that_does_the_work_of_a_lag_the_lag_is_found():
+    vehicle, lag = load_vehicle('hummingbird'), 0.05
+    causes, fit = usual_fits(vehicle, {'motor_lag': {'time_constant': lag}})
     late = fit(nominal(vehicle), (causes['actuation_delay'],))
     [(chosen, start)] = other_actuators((causes['actuation_delay'],), list(causes.values()),
                                         late.z, vehicle)
@@ -302,3 +308,26 @@ def test_from_a_delay_that_does_the_work_of_a_lag_the_lag_is_found():
     # Both have one parameter: in variances of the noise, far more than chance leaves.
     same = fit(late.z, (causes['actuation_delay'],), found.noise)
     assert same.cost > found.cost + 30.0
+
+
+def test_from_a_thrust_that_does_the_work_of_a_large_mass_the_mass_is_found():
+    vehicle = load_vehicle('hummingbird')
+    added = 0.2 * vehicle.mass
+    causes, fit = usual_fits(vehicle, {'mass_offset': {'mass': added},
+                                       'rotor_drag': {'x': 0.1, 'y': 0.1}})
+    thrust, drag = causes['thrust_scale'], causes['rotor_drag']
+    light = key_of((thrust, drag))
+    weak = fit(nominal(vehicle), light)
+    [(chosen, start)] = other_ratios(light, list(causes.values()), weak.z, vehicle)
+    assert set(chosen) == {causes['mass_offset'], drag}
+    found = fit(start, chosen)
+    place = found.columns.index(causes['mass_offset'].columns[0])
+    assert abs(found.z[found.columns[place]] - added) < 4 * found.errors[place]
+    assert (found.z == nominal(vehicle))[list(thrust.columns)].all()
+    assert fit(weak.z, light, found.noise).cost > found.cost + 30.0
+
+
+def test_effects_of_no_ratio_have_none_in_their_place():
+    vehicle = load_vehicle('hummingbird')
+    drag, thrust = Candidate('rotor_drag', 'd', (0,)), Candidate('thrust_scale', 't', (1,))
+    assert other_ratios((drag,), [drag, thrust], nominal(vehicle), vehicle) == []
