@@ -388,6 +388,46 @@ class Carousel(Force):
         return self.load * np.array([*(outwards + across), 0.0])
 
 
+class Sandbag(Force):
+    """
+    A line with a sandbag on the ground, which slides once the line pulls hard enough.
+
+    So the line is slack, then taut as a spring is, and then pulls by the friction of the bag,
+    which is as much as its weight, and by that where the flight lifts it. As vehicles are secured
+    in first flights in practice. A spring and what slides: L. Prandtl, Ein Gedankenmodell zur
+    kinetischen Theorie der festen Koerper, Zeitschrift fuer Angewandte Mathematik und Mechanik 8,
+    1928.
+    """
+
+    LENGTHS, GIVES = (1.4, 1.6), 0.08     # m; m, by which the line is longer as the bag slides
+    BEGINS = 0.3                            # m from the middle, at most, along either axis
+
+    def __init__(self, size, weight, rng):
+        """Draw how long the line is; take how hard it pulls at most, N."""
+        self.length, self.most = rng.uniform(*self.LENGTHS), 0.03 * size * weight
+
+    def begin(self, rng):
+        """Draw where the bag lies."""
+        self.bag = np.array([*rng.uniform(-self.BEGINS, self.BEGINS, 2), 0.0])
+        self._place = self.bag
+
+    def force(self, time, position, velocity):
+        """Return the force."""
+        self._place = position
+        away = self.bag - position
+        far = float(np.linalg.norm(away))
+        taut = np.clip((far - self.length) / self.GIVES, 0.0, 1.0)
+        return self.most * taut * away / max(far, 1e-9)
+
+    def after(self, step, rotation, acceleration):
+        """Let the bag slide until the line holds it no more."""
+        away = (self.bag - self._place)[:2]
+        far, high = float(np.linalg.norm(away)), self._place[2]
+        reach = np.sqrt(max((self.length + self.GIVES) ** 2 - high ** 2, 0.0))
+        if far > reach:
+            self.bag = np.array([*(self._place[:2] + reach / far * away), 0.0])
+
+
 # Each with what of the vehicle its size is measured by.
 KINDS = {'periodic_force': (Periodic, 'weight'), 'tether': (Tether, 'weight'),
          'updraft': (Updraft, 'weight'), 'thrust_exponent': (Exponent, 'hover'),
@@ -398,4 +438,5 @@ KINDS = {'periodic_force': (Periodic, 'weight'), 'tether': (Tether, 'weight'),
          'branches': (Branches, 'weight', 'radius'), 'leash': (Leash, 'weight'),
          'recoil': (Recoil, 'weight', 'radius'), 'keel': (Keel, 'weight', 'radius'),
          'twisted': (Twisted, 'weight', 'radius', 'hover'),
-         'flywheel': (Flywheel, 'weight', 'radius'), 'carousel': (Carousel, 'mass')}
+         'flywheel': (Flywheel, 'weight', 'radius'), 'carousel': (Carousel, 'mass'),
+         'sandbag': (Sandbag, 'weight')}
