@@ -27,5 +27,5 @@ NOISES = {
 STRANGERS = {
     DEVELOPMENT: ('periodic_force', 'tether', 'thrust_exponent', 'backlash', 'updraft', 'slosh',
                   'ceiling', 'neighbours', 'compass', 'branches', 'leash', 'recoil',
-                  'keel', 'twisted', 'flywheel'),
-    EVALUATION: ('wall', 'whirl', 'stutter', 'carousel')}
+                  'keel', 'twisted', 'flywheel', 'carousel'),
+    EVALUATION: ('wall', 'whirl', 'stutter', 'sandbag')}

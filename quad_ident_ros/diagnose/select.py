@@ -279,11 +279,27 @@ class _Search:
             everyone.values.flat[:] = distances[len(self.columns):]
             self.fit(chosen, start, everyone, self.frame.slopes.starts)
         best = self.best_key()
-        fit = self.tried[best]
-        for chosen, start in (*other_actuators(best, self.causes, fit.z, self.vehicle),
-                              *other_ratios(best, self.causes, fit.z, self.vehicle)):
-            if chosen not in self.tried:
-                self.fit(chosen, start, fit.nuisances, fit.starts)
+        for chosen, start in other_actuators(best, self.causes, self.tried[best].z, self.vehicle):
+            self.try_from(best, chosen, start)
+        self.try_other_ratios(best)
+
+    def try_other_ratios(self, chosen: tuple) -> list[Fitted]:
+        """Return the sets with another effect of the same ratio in place of one, fitted."""
+        fit, found = self.tried[chosen], []
+        for other, start in other_ratios(chosen, self.all_causes, fit.z, self.vehicle):
+            if other not in self.tried:
+                # First it alone, or the others would leave where they fit to make up for it.
+                alone = tuple(cause for cause in other if cause.nuisance or cause not in chosen)
+                start = refitted(self.flights, self.vehicle, start, alone, self.noise,
+                                 fit.nuisances, fit.starts, slow=self.slow).z
+            found.append(self.try_from(chosen, other, start))
+        return found
+
+    def try_from(self, known: tuple, chosen: tuple, start: np.ndarray) -> Fitted:
+        """Return a set, fitted from a vector and the nuisances of a known one where it is new."""
+        if chosen not in self.tried:
+            self.fit(chosen, start, self.tried[known].nuisances, self.tried[known].starts)
+        return self.judge(chosen)
 
     def best_key(self) -> tuple:
         """Return the set around which the flights are linearised."""
@@ -357,6 +373,9 @@ class _Search:
         if _actuators(self.best.chosen) != _actuators(self.linearised_at):
             self.stand_at(self.best.chosen)
             self.best = self.judge(self.best.chosen)
+        # Whichever of thrust and mass led here, the other one may do as well.
+        self.best = max((self.best, *self.try_other_ratios(self.best.chosen)),
+                        key=lambda one: one.evidence)
 
     def share_alike(self) -> None:
         """
