@@ -68,8 +68,9 @@ def of_battery(battery, params, places, hover, flight):
 
 
 def instants(places, flight):
-    """Return the Instants of a flight."""
-    return [Instant(flight['time'][k], np.zeros(3), flight['air'][k], np.eye(3),
+    """Return the Instants of a flight, level unless it has a 'rotation' (COUNT, 3, 3)."""
+    turned = flight.get('rotation', np.broadcast_to(np.eye(3), (COUNT, 3, 3)))
+    return [Instant(flight['time'][k], np.zeros(3), flight['air'][k], turned[k],
                     flight['rate'][k], flight['air'][k], flight['speeds'][k],
                     flight['heights'][k], places) for k in range(COUNT)]
 

@@ -11,43 +11,34 @@ from withheld.forms.motors import TIME, towards
 
 class Averaged(Motor):
     """
-    A controller that goes to the mean of what was commanded lately, against a line with glitches.
+    A controller that goes to the mean of what was commanded in each window, once it is over.
 
-    All of the window counts alike, so that a step becomes a straight ramp, before a short lag of
-    the motor. E. B. Hogenauer, An economical class of digital filters for decimation and
+    Against a line with glitches: so a step comes late, and in steps, before a short lag of the
+    motor. E. B. Hogenauer, An economical class of digital filters for decimation and
     interpolation, IEEE Transactions on Acoustics, Speech, and Signal Processing 29(2), 1981.
     """
 
     beside = ('actuation_delay',)
-    WINDOW, OWN = 1.4, 0.3      # of the mean time: what is looked at, the motor's time constant
+    WINDOW, OWN = 0.7, 0.3      # of the mean time: the window, the motor's time constant
 
     def __init__(self, size, params, rng):
-        """Set the mean time."""
+        """Set the mean time: a window is as late in the mean as it is long."""
         self.parameters = {'time': TIME * size}
         self.window = self.WINDOW * TIME * size
-        self._past, self._mean = None, None     # [(s, sum of the commands until then)]
+        self._seen, self._total, self._goal = 0.0, 0.0, None
 
     def turn(self, speeds, command, step):
         """Return the speeds."""
         if not self.window:
             return command
-        if self._past is None:
-            self._past = [(-self.window, -self.window * command), (0.0, 0.0 * command)]
-            self._mean = command
-        before, self._mean = self._mean, self._later(command, step)
-        goal = 0.5 * (before + self._mean)
+        if self._goal is None:
+            self._goal = command
+        goal = self._goal
+        self._seen, self._total = self._seen + step, self._total + step * command
+        if self._seen >= self.window - 0.5 * step:
+            self._goal = self._total / self._seen
+            self._seen, self._total = 0.0, 0.0
         return towards(speeds, goal, self.OWN * self.parameters['time'], step)
-
-    def _later(self, command, step):
-        """Return the mean over the window (n,) after a step in which a command is held."""
-        time, total = self._past[-1]
-        time, total = time + step, total + step * command
-        self._past.append((time, total))
-        while self._past[1][0] <= time - self.window:
-            self._past.pop(0)
-        (one, low), (other, high) = self._past[:2]
-        share = (time - self.window - one) / (other - one)
-        return (total - low - share * (high - low)) / self.window
 
 
 class Ramped(Motor):
