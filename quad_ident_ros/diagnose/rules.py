@@ -48,8 +48,9 @@ class Rules:
         effect is not more probable for having more laws.
       prior_width: usual sizes of a parameter that are one standard deviation of its prior about
         no effect: wide enough for the largest that is flown.
-      alike: log evidence within which sets are about as good, so that the smallest is taken: a
-        Bayes factor under 20 is not strong (Kass and Raftery, JASA 90, 1995).
+      alike: log evidence within which sets are about as good, so that the smallest is taken and a
+        rival is not ruled out: a Bayes factor under 20 is not strong (Kass and Raftery, JASA 90,
+        1995).
       worth: share of the cost that forms with more parameters must save over others of the same
         effects: a form that is wrong by 10 % of what an effect does leaves that much of a gap ten
         times the noise.
@@ -86,9 +87,7 @@ class Rules:
       present: probability from which on an effect is named: more likely there than not.
       half: share of the closable gap from which on the effects that matter are named although each
         of them is less probable than that, if nothing else is: most of it has their cause.
-      doubt: probability of a rival from which on it is not ruled out; an effect of 1 - doubt is
-        sure. instead: how many times the odds of a rival must be greater without an effect than
-        with it.
+      instead: how many times the odds of a rival must be greater without an effect than with it.
       material: share of the closable gap that an effect must close to be in the verdict: less is
         below what a change of the weather or of a battery does.
       lost: share of the floor of the tolerance that must be lost, too: as much as a material share
@@ -155,7 +154,6 @@ class Rules:
     steady_block: float = 2.0
     present: float = 0.5
     half: float = 0.5
-    doubt: float = 0.12
     instead: float = 2.0
     calibration: tuple[float, float, float, float, float] = (-3.86, 1.85, 1.83, -1.19, 0.343)
     companion: tuple[float, float] = (0.1, 3.0)
@@ -174,6 +172,11 @@ class Rules:
     regime: float = 0.35
     unexplained: float = 0.58
     differs: float = 2.0
+
+    @property
+    def doubt(self) -> float:
+        """Return the probability from which on a rival of what is named is not ruled out."""
+        return 1.0 / (1.0 + exp(self.alike))
 
     def shift(self, effect: str) -> float:
         """Return by how much a fleet raises the log odds that an effect is present."""

@@ -4,6 +4,8 @@
 
 from types import SimpleNamespace
 
+import numpy as np
+
 from quad_ident_ros.diagnose.candidates import Candidate
 from quad_ident_ros.diagnose.doubts import doubts_of
 from quad_ident_ros.diagnose.rules import RULES
@@ -33,8 +35,16 @@ def test_only_what_stands_in_its_place_is_a_rival():
     doubts = doubts_of(unsure, (MASS,), RULES, at_once)
     assert list(doubts) == [MASS, THRUST]
     assert [fit.causes for fit in doubts.values()] == [(MASS,), (THRUST,)]
-    sure = selected(*sets, posterior={MASS: 0.95, THRUST: 0.2, BIAS: 0.5})
+    sure = selected(*sets, posterior={MASS: 0.96, THRUST: 0.2, BIAS: 0.5})
     assert not doubts_of(sure, (MASS,), RULES, at_once)
+
+
+def test_a_rival_is_ruled_out_by_the_factor_by_which_a_larger_set_would_be_taken():
+    sets = [((MASS,), 0.0), ((THRUST,), -0.4), ((), -90.0)]
+    for behind, rules_out in ((RULES.alike - 0.1, False), (RULES.alike + 0.1, True)):
+        share = 1.0 / (1.0 + np.exp(behind))
+        found = selected(*sets, posterior={MASS: 1.0 - share, THRUST: share})
+        assert (not doubts_of(found, (MASS,), RULES, at_once)) == rules_out
 
 
 def test_which_rotor_is_weak_is_no_doubt_between_effects():
@@ -54,6 +64,6 @@ def test_a_set_with_both_speaks_for_neither():
 def test_a_rival_that_needs_further_effects_is_none():
     """Of sets that explain flights equally well, that with the fewest effects is the verdict."""
     found = selected(((THRUST,), -6.0), ((MASS, BIAS), 0.0), ((THRUST, BIAS), 0.0),
-                     posterior={THRUST: 0.5, MASS: 0.5, BIAS: 0.1})
+                     posterior={THRUST: 0.5, MASS: 0.5, BIAS: 0.04})
     assert list(doubts_of(found, (THRUST,), RULES, at_once)) == [THRUST, MASS]
     assert not doubts_of(found, (THRUST,), RULES, lambda *_: False)

@@ -81,7 +81,7 @@ def searched(costs, evidence):
     search.flights = search.vehicle = search.noise = search.slow = None
     search.linearised_at, search.judged_around = (), {}
     search.quadratic = SimpleNamespace(scatter=1.0)
-    search.tried = {key: SimpleNamespace(cost=cost) for key, cost in costs.items()}
+    search.tried = {key: SimpleNamespace(cost=cost, z=None) for key, cost in costs.items()}
 
     def judge(key):
         made = Fitted(key, search.tried[key], evidence[key], (0, 0))
