@@ -26,6 +26,7 @@ LAGS = 14
 ALIKE = 0.1     # weight of shares that are alike, beside the drift's
 KEPT = 0.995    # of pairs of samples, the others being glitches that were not told
 FEWEST = 50     # pairs of samples from which on a lag is used
+ARITHMETIC = 1e-6   # of the variance of the noise: less of a drift is that of arithmetic
 
 
 def measurement_noise(flights: Sequence[Track], vectors: Sequence[np.ndarray],
@@ -120,6 +121,8 @@ def _split(lags: np.ndarray, spread: np.ndarray, period: float, white: float,
     h, memory = lags[:, None], np.array(MEMORIES)
     decay = 1.0 - np.exp(-h / memory)
     table = np.hstack([np.full_like(h, 2.0), 2.0 * decay, 2.0 * memory * (h - memory * decay)])
+    # Exact states of a motion along some axes alone leave none at all along the others.
+    spread = np.maximum(spread, ARITHMETIC * near[0])
     # Spreads over long times are known less well, in proportion to their size.
     weight = 1.0 / (spread * np.sqrt(lags + MEMORIES[0]))
     count = len(MEMORIES)

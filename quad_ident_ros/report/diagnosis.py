@@ -63,6 +63,9 @@ IN_SIMULATOR = ('', 'as it is', 'with nuisances', 'with the effects', 'our model
 NEXT = ('manoeuvre', 'to', 'standard errors now', 'with it', 'size', 'height', 'speed up to')
 """What next_row says of a manoeuvre."""
 
+BELOW = ('what to fly next', 'unexplained', 'would not show', 'vehicle file')
+"""What a sentence of the verdict may point to that comes below it."""
+
 
 def show(found: Diagnosis, stream: TextIO, detail: str = USUAL,
          written: str | None = None) -> None:
@@ -74,8 +77,11 @@ def show(found: Diagnosis, stream: TextIO, detail: str = USUAL,
     screen = console(stream)
     say(screen, f'verdict: {verdict_line(found)}', 'bold')
     say(screen, size_line(found))
-    say(screen, next_step(found, written))
+    following = next_step(found, written)
+    say(screen, following)
     if detail == VERDICT:
+        if any(f'"{name}"' in following for name in BELOW):
+            say(screen, 'That is printed without --quiet.')
         return
     say(screen, '')
     say(screen, 'where: force and moment that the nominal vehicle does not explain')

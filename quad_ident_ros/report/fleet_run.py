@@ -16,12 +16,14 @@ from rich.progress import TaskID
 from quad_ident_ros.data.counted import counted
 from quad_ident_ros.fleet.insight import Insight
 from quad_ident_ros.fleet.run import Progress, Summary
+from quad_ident_ros.fleet.work import REFUSED
 from quad_ident_ros.report.data import finite
 from quad_ident_ros.report.screen import progress_bar
 from quad_ident_ros.whole_file import Lines
 
 OFTEN = 0.2     # s between two changes of the line, and
 RARELY = 30.0   # between two lines where standard error is no terminal
+REASONS = 3     # of refused flights that are said; all are in the data set
 UNITS = {'reading': 'flights', 'comparing': 'parameters of vehicles'}
 """What a stage of a run counts, if not groups."""
 
@@ -41,13 +43,16 @@ class Reporter:
         self._stage: str | None = None
         self._task: TaskID | None = None
         self._begun = self._said = 0.0
+        self._refused = 0
 
     def __enter__(self) -> 'Reporter':
         """Name the data set, the workers and the dashboard."""
         if self._path and self._path != '-':
             self._lines = Lines(self._path)
         self._note(f'data set: {self._out}; {workers(self._client)}')
-        self._note(dashboard(self._client))
+        link = dashboard(self._client)
+        if link:
+            self._note(link)
         self._bar.start()
         return self
 
@@ -70,6 +75,10 @@ class Reporter:
             self._task = self._bar.add_task('', total=max(progress.total, 1))
         if progress.last:
             group, outcome = progress.last
+            if outcome.status == REFUSED:
+                self._refused += 1
+                if self._refused <= REASONS:
+                    self._note(f'refused: {outcome.reason}')
             self._write({
                 'group': group.key, 'vehicle': group.vehicle,
                 'configuration': group.configuration, 'date': group.date.isoformat(),
@@ -214,14 +223,12 @@ def workers(client: Any) -> str:
 
 
 def dashboard(client: Any) -> str:
-    """Return where the dashboard of Dask is, or how to have it, in words."""
+    """Return where the dashboard of Dask is, in words, where there is one."""
     link = drawn = None
-    with suppress(Exception):       # a scheduler may have none
+    with suppress(Exception):       # a scheduler may have none, and needs bokeh to draw it
         link = client.dashboard_link
         drawn = client.run_on_scheduler(find_spec, 'bokeh')
-    if link and drawn:
-        return f"Dask's dashboard: {link}"
-    return "Dask's dashboard needs bokeh where the scheduler runs: pip install bokeh"
+    return f"Dask's dashboard: {link}" if link and drawn else ''
 
 
 def _span(seconds: float) -> str:

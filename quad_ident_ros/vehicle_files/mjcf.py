@@ -90,7 +90,8 @@ def _take_bodies(draft: Draft, model: Model, parts: Sequence[Part], pushed: set[
     """Enter mass and inertia of all bodies of a vehicle, and return them as one."""
     bodies = bodies_of(draft, parts, pushed)
     if not sum(body.mass for body in bodies) > 0.0:
-        raise InputError(f'{parts[0].element.where}: it has no mass; give it an <inertial>')
+        raise InputError(f'{parts[0].element.where}: it has no mass above 0; give it '
+                         'an <inertial> with one')
     whole = combined(bodies)
     [total] = model.setting('settotalmass', (-1.0,))
     if total > 0.0:

@@ -30,6 +30,16 @@ def flights(tmp_path_factory):
     return {name: folder / f'small_angle_{name}.csv' for name in ('phi', 'theta', 'psi', 'z')}
 
 
+@pytest.mark.slow
+def test_an_exact_record_of_one_axis_is_diagnosed_as_the_nominal_vehicle(tmp_path, capsys):
+    """The flights of the paper move along one axis: nothing changes at all along the others."""
+    assert main(['simulate', 'small_angle', '-o', str(tmp_path)]) == 0
+    capsys.readouterr()
+    assert main(['diagnose', str(tmp_path / 'small_angle_psi.csv'), '--vehicle',
+                 'paper_quadrotor', '--quiet']) == 0
+    assert capsys.readouterr().out.startswith('verdict: none')
+
+
 def test_help_of_every_command_names_it(capsys):
     assert main([]) == 0
     assert 'identify' in capsys.readouterr().out

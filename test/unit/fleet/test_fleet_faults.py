@@ -26,12 +26,12 @@ from quad_ident_ros.fleet.store import read_table  # noqa: E402, I100
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group('dask')]
 
 ROOT = Path(__file__).resolve().parents[3]
-FLIGHTS, LONGEST = 6, 400.0     # s for a run, on a machine that does something else, too
+FLIGHTS, LONGEST = 4, 400.0     # s for a run, on a machine that does something else, too
 
 
 @pytest.fixture(scope='module')
 def folder(tmp_path_factory):
-    """Give a folder with a flight of each of six vehicles."""
+    """Give a folder with a flight of each of some vehicles."""
     top = tmp_path_factory.mktemp('flights')
     vehicle = load_vehicle('hummingbird')
     for number in range(FLIGHTS):
@@ -98,7 +98,8 @@ def check_complete(folder, out):
     assert len({group['group'] for group in groups}) == len(groups) == FLIGHTS
     assert {group['status'] for group in groups} == {'diagnosed'}
     verdicts = {group['vehicle']: group['verdict'] for group in groups}
-    assert verdicts['vehicle_0'] == ['none'] and verdicts['vehicle_5'] == ['thrust_scale']
+    assert verdicts['vehicle_0'] == ['none']
+    assert verdicts[f'vehicle_{FLIGHTS - 1}'] == ['thrust_scale']
     assert not list((Path(out) / '.unfinished').iterdir())
 
 

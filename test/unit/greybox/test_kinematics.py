@@ -111,3 +111,18 @@ def test_a_tilt_of_the_attitude_that_is_known_is_no_noise():
     turned = moved(motion(), np.append(np.zeros(6), np.append(tilt, np.zeros(3))))
     assert (told(turned, error) / TRUE).max() > 1.3
     np.testing.assert_allclose(told(turned, error, z), TRUE, rtol=0.05)
+
+
+@pytest.mark.parametrize('moves', ['height', 'heading'])
+def test_exact_states_of_a_motion_along_one_axis_have_no_noise(moves):
+    """Along the others nothing drifts at all, not even by what arithmetic makes of it."""
+    states = np.zeros((len(TIMES), 13))
+    states[:, 6] = 1.0
+    if moves == 'height':
+        states[:, 2], states[:, 5] = 0.5 * TIMES, 0.5
+    else:
+        states[:, 6], states[:, 9] = np.cos(0.1 * TIMES), np.sin(0.1 * TIMES)
+        states[:, 12] = 0.2
+    with np.errstate(divide='raise', over='raise', invalid='raise'):
+        found = told(states, np.zeros((len(TIMES), 12)))
+    assert np.all(found < 1e-3)

@@ -208,6 +208,11 @@ def test_the_verdict_alone_is_three_lines(terminal):
     assert terminal(VERDICT).splitlines() == whole[:3]
 
 
+def test_the_verdict_alone_says_where_the_lines_are_that_it_points_to(terminal):
+    lines = terminal(VERDICT, verdict=('rotor_drag', 'unknown')).splitlines()
+    assert '"unexplained"' in lines[2] and lines[3:] == ['That is printed without --quiet.']
+
+
 def test_effects_without_a_row_are_told_in_one_line(terminal, found):
     [line] = [one for one in terminal().splitlines() if 'not in the table' in one]
     without = [row for row in found.ranking if row.form is None]

@@ -157,7 +157,7 @@ def test_of_two_vehicles_one_is_named():
     ('<light pos="0 0 2"/>', '<include file="x2.xml"/>', "<include>: 'x2.xml' is not beside"),
     ('<light pos="0 0 2"/>', '<replicate count="2"/>', '<replicate>: it is not expanded here'),
     (INERTIAL, '<geom type="mesh" mesh="frame" mass="1"/>', "the mesh 'frame', which is not read"),
-    (INERTIAL, '', "<body name='quad'>: it has no mass; give it an <inertial>"),
+    (INERTIAL, '', "<body name='quad'>: it has no mass above 0; give it an <inertial> with one"),
     (INERTIAL, '<geom size="0.1" class="main" type="box"/>', 'size: a box has 3, got 1'),
     ('</mujoco>', '', 'is not complete XML'),
     ('<mujoco model="test">', '<!DOCTYPE a [<!ENTITY b "c">]><mujoco model="test">', '(DTD)'),
