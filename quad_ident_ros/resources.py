@@ -48,8 +48,7 @@ def find(kind, name_or_path):
         path = _existing(text)
         if path is None:
             said = text if text.isprintable() and len(text) < 300 else schema.shown(text)
-            if _existing(text, Path.is_dir) is not None:
-                raise InputError(f'{said}: this is a folder; name a file in it')
+            _refuse_folder(text, said)
             problem = ('this is not a file' if _existing(text, Path.exists) else
                        'there is no such file')
             raise InputError(f'{said}: {problem}; give the path of one, or a name: '
@@ -59,11 +58,17 @@ def find(kind, name_or_path):
     path = shipped or _existing(text)
     if path is not None:
         return path
+    _refuse_folder(text, schema.shown(text))
     shipped_names = names(kind)
     mend = (schema.suggestion(text, shipped_names)
             or 'give one of these or the path of a .yaml file')
     raise InputError(f'{schema.shown(text)} is not among the {kind} ({", ".join(shipped_names)}); '
                      f'{mend}')
+
+
+def _refuse_folder(path, said):
+    if _existing(path, Path.is_dir) is not None:
+        raise InputError(f'{said}: this is a folder; name a file in it')
 
 
 def _existing(path, kind=Path.is_file):

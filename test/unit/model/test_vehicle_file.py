@@ -448,6 +448,14 @@ def test_a_folder_is_no_file(tmp_path):
         load_vehicle(tmp_path / 'v.yaml')
 
 
+def test_a_folder_without_a_path_is_no_name_of_a_vehicle(tmp_path, monkeypatch):
+    (tmp_path / 'drone').mkdir()
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(InputError, match='drone.*: this is a folder; name a file in it'):
+        load_vehicle('drone')
+
+
+
 def test_a_device_is_no_file():
     for path in ('/dev/zero', '/dev/null'):
         with pytest.raises(InputError, match=f'{path}: this is a device; name a file'):
