@@ -7,7 +7,7 @@ from collections.abc import Collection, Sequence
 import numpy as np
 
 from quad_ident_ros.diagnose.candidates import Candidate
-from quad_ident_ros.diagnose.evidence import key_of
+from quad_ident_ros.diagnose.evidence import excludes, key_of
 from quad_ident_ros.diagnose.fitted import effects_in
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.greybox.parameters import limits, nominal
@@ -60,6 +60,7 @@ def other_ratios(best: tuple, causes: Sequence[Candidate], z: np.ndarray, vehicl
     Return [(set, vector)] with the usual form of another effect for one of a set of its ratio.
 
     From a thrust that is 10 % off, slopes say that a mass in its place moves a vehicle otherwise.
+    What never stands beside the other one leaves with it, as the thrust of each flight.
     """
     found = []
     for cause in effects_in(best):
@@ -69,7 +70,8 @@ def other_ratios(best: tuple, causes: Sequence[Candidate], z: np.ndarray, vehicl
                     other.effect].ratio:
                 start = z.copy()
                 start[list(cause.columns)] = nominal(vehicle)[list(cause.columns)]
-                found.append((key_of((other, *(one for one in best if one is not cause))), start))
+                kept = (one for one in best if one is not cause and not excludes(one, other))
+                found.append((key_of((other, *kept)), start))
     return found
 
 

@@ -281,7 +281,7 @@ class _Search:
         best = self.best_key()
         for chosen, start in other_actuators(best, self.causes, self.tried[best].z, self.vehicle):
             self.try_from(best, chosen, start)
-        self.try_other_ratios(best)
+        self.try_other_ratios(self.best_key())
 
     def try_other_ratios(self, chosen: tuple) -> list[Fitted]:
         """Return the sets with another effect of the same ratio in place of one, fitted."""
@@ -374,8 +374,12 @@ class _Search:
             self.stand_at(self.best.chosen)
             self.best = self.judge(self.best.chosen)
         # Whichever of thrust and mass led here, the other one may do as well.
-        self.best = max((self.best, *self.try_other_ratios(self.best.chosen)),
-                        key=lambda one: one.evidence)
+        for one in self.try_other_ratios(self.best.chosen):
+            if any(out_of_bounds(cause, one.estimate, self.vehicle, self.rules)
+                   for cause in one.causes):
+                del self.tried[one.chosen], self.judged[one.chosen]
+            else:
+                self.best = max(self.best, one, key=lambda each: each.evidence)
 
     def share_alike(self) -> None:
         """

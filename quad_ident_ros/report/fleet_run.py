@@ -99,6 +99,9 @@ class Reporter:
     def end(self, summary: Summary) -> None:
         """Say what the run has come to."""
         self._bar.stop()
+        if self._refused > REASONS:
+            self._note(f'refused: {self._refused - REASONS} more; the column reason of '
+                       f'{self._out}/flights says why')
         groups = summary.groups
         self._write({'schema': 'quad_ident/fleet_run/1', 'out': str(self._out),
                      'flights': summary.flights, 'groups': groups, 'before': summary.before,

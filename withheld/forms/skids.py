@@ -11,9 +11,10 @@ class Skidded(Drag):
     """
     Two skids along the body, on legs that are splayed: round rods, each with the drag of its own.
 
-    Only the flow across a rod counts, by the square of its speed, and the force is along it: the
-    independence principle of yawed cylinders, S. F. Hoerner, Fluid-Dynamic Drag, 1965, chapter 3.
-    So flight along the skids is easy, and legs that lean push the vehicle down as well as back.
+    Only the flow across a rod counts, by the square of its speed, and the force is along that
+    flow: the independence principle of yawed cylinders, S. F. Hoerner, Fluid-Dynamic Drag, 1965,
+    chapter 3. So flight along the skids is easy, and in a climb legs and skids add to each other.
+    The coefficient is of kg/m.
     """
 
     ALONG, LEGS, SPLAY = 0.7, 0.4, 0.5      # shares of skids and legs; rad from upright

@@ -28,7 +28,7 @@ WHITE = Sensors(white=MOCAP_IMU.white)
 # Weaker thrust gives weaker moments, too: above this size they show in a hover which it is.
 PAYLOAD = {'mass_offset': {'mass': 0.012 * VEHICLE.mass}}
 WEAKER = {'thrust_scale': {'factor': 0.988}}
-# Half of it beside a tilt: the whole is settled by the flights of the test at seven to one.
+# Half of it beside a tilt: the flights of the test would settle the whole.
 TILTED = {'attitude_misalignment': {'roll': 0.03, 'pitch': -0.02},
           'mass_offset': {'mass': 0.006 * VEHICLE.mass}}
 ALIKE = ['mass_offset', 'thrust_scale']

@@ -331,3 +331,16 @@ def test_effects_of_no_ratio_have_none_in_their_place():
     vehicle = load_vehicle('hummingbird')
     drag, thrust = Candidate('rotor_drag', 'd', (0,)), Candidate('thrust_scale', 't', (1,))
     assert other_ratios((drag,), [drag, thrust], nominal(vehicle), vehicle) == []
+
+
+def test_the_thrust_of_each_flight_leaves_with_the_thrust_that_all_have():
+    vehicle = load_vehicle('hummingbird')
+    record = fly_closed_loop(vehicle, {}, 'hover', duration=6.0, seed=1)
+    flights = [flight_of(track_of(record, vehicle))] * 2
+    causes = candidates(flights, vehicle, RULES)
+    thrust, mass = (next(cause for cause in causes if cause.effect == name)
+                    for name in ('thrust_scale', 'mass_offset'))
+    mine, clock = (next(cause for cause in nuisance_candidates(vehicle, flights)
+                        if cause.effect == name) for name in ('thrust_scale_by_flight', CLOCK))
+    [(chosen, _)] = other_ratios(key_of((thrust, mine, clock)), causes, nominal(vehicle), vehicle)
+    assert set(chosen) == {mass, clock}

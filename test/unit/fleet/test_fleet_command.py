@@ -4,6 +4,7 @@
 
 from contextlib import nullcontext
 from dataclasses import replace
+import datetime
 import io
 import json
 from types import SimpleNamespace
@@ -201,9 +202,25 @@ def test_it_is_said_whether_the_memory_of_the_workers_is_bounded(limits, said):
 
 def reporter_of(path):
     """Return a Reporter of a cluster without workers, and what a run ends with."""
-    client = SimpleNamespace(scheduler_info=lambda **_: {'workers': {}})
+    client = SimpleNamespace(scheduler_info=lambda **_: {'workers': {}}, ncores=dict)
     return Reporter(client, path.parent, path), Summary(
         0, dict.fromkeys(('diagnosed', 'refused', 'failed', 'timeout'), 0), 0, ())
+
+
+def test_the_reasons_of_the_first_flights_that_are_refused_are_said(tmp_path, capsys):
+    reporter, summary = reporter_of(tmp_path / 'lines.json')
+    day = datetime.date(2026, 5, 14)
+    with reporter:
+        for number in range(5):
+            group = SimpleNamespace(key=str(number), vehicle='one', configuration='', date=day)
+            outcome = SimpleNamespace(status='refused', reason=f'{number}.csv: the file is empty',
+                                      seconds=0.1)
+            reporter.tell(Progress(DIAGNOSING, 5, number + 1, refused=number + 1,
+                                   last=(group, outcome)))
+        reporter.end(summary)
+    said = [one for one in capsys.readouterr().err.splitlines() if one.startswith('refused')]
+    assert said == [*(f'refused: {number}.csv: the file is empty' for number in range(3)),
+                    f'refused: 2 more; the column reason of {tmp_path}/flights says why']
 
 
 def test_lines_for_a_machine_go_into_a_folder_that_is_made(tmp_path):

@@ -455,7 +455,6 @@ def test_a_folder_without_a_path_is_no_name_of_a_vehicle(tmp_path, monkeypatch):
         load_vehicle('drone')
 
 
-
 def test_a_device_is_no_file():
     for path in ('/dev/zero', '/dev/null'):
         with pytest.raises(InputError, match=f'{path}: this is a device; name a file'):

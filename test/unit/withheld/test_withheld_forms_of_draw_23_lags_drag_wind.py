@@ -274,7 +274,7 @@ def test_a_wing_never_gains_energy_of_still_air():
         assert flown(part, *air) @ air < 0.0
 
 
-def test_skids_are_easy_along_and_their_legs_push_down():
+def test_skids_are_easy_along_and_each_rod_feels_the_flow_across_it_alone():
     part = part_of(Skidded, 2.0)
     ahead, aside = flown(part, 2.0, 0.0, 0.0), flown(part, 0.0, 2.0, 0.0)
     # Along the skids only the legs drag, across them both; by the square of the speed.
