@@ -175,7 +175,11 @@ class Rules:
 
     @property
     def doubt(self) -> float:
-        """Return the probability from which on a rival of what is named is not ruled out."""
+        """
+        Return the probability from which on a rival of what is named is not ruled out.
+
+        What has one minus that, or more, is sure.
+        """
         return 1.0 / (1.0 + exp(self.alike))
 
     def shift(self, effect: str) -> float:

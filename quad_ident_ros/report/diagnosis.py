@@ -81,7 +81,7 @@ def show(found: Diagnosis, stream: TextIO, detail: str = USUAL,
     say(screen, following)
     if detail == VERDICT:
         if any(f'"{name}"' in following for name in BELOW):
-            say(screen, 'That is printed without --quiet.')
+            say(screen, 'Without --quiet these are printed.')
         return
     say(screen, '')
     say(screen, 'where: force and moment that the nominal vehicle does not explain')

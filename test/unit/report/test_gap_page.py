@@ -210,7 +210,7 @@ def test_the_verdict_alone_is_three_lines(terminal):
 
 def test_the_verdict_alone_says_where_the_lines_are_that_it_points_to(terminal):
     lines = terminal(VERDICT, verdict=('rotor_drag', 'unknown')).splitlines()
-    assert '"unexplained"' in lines[2] and lines[3:] == ['That is printed without --quiet.']
+    assert '"unexplained"' in lines[2] and lines[3:] == ['Without --quiet these are printed.']
 
 
 def test_effects_without_a_row_are_told_in_one_line(terminal, found):

@@ -73,7 +73,9 @@ def test_a_form_of_size_zero_is_no_effect(effect, form):
     if isinstance(part, Motor):
         np.testing.assert_allclose(part.turn(np.full(4, HOVER), command, 0.002), command)
     if isinstance(part, Battery):
-        part.drain(5.0, 0.01, now.speeds / HOVER)
+        for k in range(2000):
+            part.drain(0.01 * k, 0.01, now.speeds / HOVER)
+        np.testing.assert_allclose(part.ratio, 1.0)
         np.testing.assert_allclose(part.gain(now.speeds / HOVER), 1.0)
     if isinstance(part, Influence):
         true, state = fresh(), np.array([*np.arange(6.0), 0.0, 0.0, 0.6, 0.8, 0.1, 0.2, 0.3])
@@ -84,13 +86,17 @@ def test_a_form_of_size_zero_is_no_effect(effect, form):
                                zip(same.values(), value.values(), strict=True)):
                 np.testing.assert_allclose(one, other, atol=1e-15)
         assert not np.any(true.get('rotor_inertia', 0.0))
-        np.testing.assert_allclose(np.ones(4) * part.gain(now), 1.0, atol=1e-12)
-        np.testing.assert_allclose(np.ones(4) * part.torque(now), 1.0)
         np.testing.assert_allclose(part.given(command), command)
-        np.testing.assert_allclose(part.measured(3.0, state, 1.1), state, atol=1e-12)
-        assert not np.any(part.wind(2.0, now.position)) and part.mass(1.0) == 0.0
-        for extra in part.wrench(now) or ():
-            np.testing.assert_allclose(extra, 0.0)
+        # What has a state of its own is no effect however long it flies.
+        for k in range(100):
+            t = 0.2 * k
+            np.testing.assert_allclose(np.ones(4) * part.gain(now), 1.0, atol=1e-12)
+            np.testing.assert_allclose(np.ones(4) * part.torque(now), 1.0, atol=1e-12)
+            np.testing.assert_allclose(part.measured(t, state, 1.1), state, atol=1e-12)
+            assert not np.any(part.wind(t, now.position)) and part.mass(t) == 0.0
+            for extra in part.wrench(now) or ():
+                np.testing.assert_allclose(extra, 0.0, atol=1e-12)
+            part.after(0.01, np.eye(3), np.array([0.5, 0.0, 3.0]))
 
 
 @pytest.mark.parametrize(('effect', 'form'), FLAT)

@@ -15,8 +15,6 @@ from withheld.forms import aerials, closures, gels, interactions, liquids, tools
 
 REST = np.zeros(3)
 LIFT = PARAMS['k_eta'] * 4.0 * HOVER ** 2
-FORMS = (gels.Thixotropic, tools.Stippling, aerials.Mistimed, aerials.Masked, liquids.Filled,
-         liquids.Wheeled, interactions.Interfering, closures.Closing, closures.Graded)
 
 
 def made(kind, size=2.0):
@@ -28,28 +26,6 @@ def made(kind, size=2.0):
 
 def still(**others):
     return replace(instant(velocity=REST, rate=REST, turn=np.ones(4)), **others)
-
-
-@pytest.mark.parametrize('kind', FORMS)
-def test_a_form_of_size_zero_is_no_effect(kind):
-    part, true = made(kind, 0.0), fresh()
-    part.alter(true, PARAMS)
-    assert true['centre'] == pytest.approx(REST) and not np.any(true.get('rotor_inertia', 0.0))
-    assert true['mass'] == PARAMS['mass'] and true['Ixx'] == PARAMS['Ixx']
-    now, state = instant(), np.array([*np.arange(6.0), 0.0, 0.0, 0.6, 0.8, 0.1, 0.2, 0.3])
-    for k in range(100):
-        assert np.ones(4) * part.gain(now) == pytest.approx(np.ones(4))
-        assert np.ones(4) * part.torque(now) == pytest.approx(np.ones(4))
-        assert part.measured(0.1 * k, state, 1.1) == pytest.approx(state)
-        for extra in part.wrench(now) or ():
-            assert extra == pytest.approx(REST)
-        part.after(0.01, np.eye(3), REST)
-
-
-@pytest.mark.parametrize('kind', FORMS)
-def test_a_form_has_the_same_parameters_in_every_flight_of_a_case(kind):
-    one, other = made(kind), made(kind)
-    assert one.parameters == other.parameters and one.parameters
 
 
 def test_a_gel_comes_along_with_all_that_the_body_gives_it():

@@ -29,22 +29,6 @@ def still(**others):
     return replace(instant(velocity=REST, rate=REST, turn=np.ones(4)), **others)
 
 
-@pytest.mark.parametrize('kind', [Belted, FieldWeakened, Exposing, Compiling, Stacked, Tandem,
-                                  Radiating, Corner, Draughty])
-def test_size_zero_is_nothing_and_every_flight_of_a_case_has_the_same(kind):
-    part, command, now = part_of(kind, 0.0), HOVER * np.array([1.2, 0.8, 1.0, 1.1]), instant()
-    if kind in (Belted, FieldWeakened):
-        assert part.turn(np.full(4, HOVER), command, 0.002) == pytest.approx(command)
-    elif kind in (Exposing, Compiling):
-        [(duration, given)] = part.pass_on(0.0, command, 0.01)
-        assert duration == pytest.approx(0.01) and np.array_equal(given, command)
-    elif kind in (Corner, Draughty):
-        assert not np.any(part.wind(2.0, now.position))
-    else:
-        assert not np.any(part.wrench(now))
-    assert part_of(kind, 2.0).parameters == part_of(kind, 2.0).parameters != {}
-
-
 def test_a_propeller_on_a_belt_swings_past_its_motor_but_is_no_later_in_the_mean():
     motor, step, missing = Belted(2.0, PARAMS, None), 0.0005, []
     speeds = np.full(4, HOVER)

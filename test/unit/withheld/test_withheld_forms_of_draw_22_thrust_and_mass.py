@@ -10,7 +10,6 @@ from scipy.spatial.transform import Rotation
 from test_withheld_forms import fresh, HOVER, instant, PARAMS
 from test_withheld_forms_of_draw_15 import turning
 
-from withheld.actuators import Battery
 from withheld.constants import GRAVITY
 from withheld.forms import (
     bellies,
@@ -26,9 +25,6 @@ from withheld.forms import (
 
 REST = np.zeros(3)
 WEIGHT = PARAMS['mass'] * GRAVITY
-CLASSES = [cyclorotors.Cycloidal, lids.Lidded, bellies.Rammed, sprays.Sprayed,
-           sulphur.TwoPlateaus, extenders.Extended, chambers.Chambered, orchards.Picking,
-           winches.PayingOut]
 
 
 def still(**others):
@@ -39,30 +35,6 @@ def made(kind, size=2.0):
     part = kind(size, PARAMS, np.random.default_rng(3))
     part.begin(np.random.default_rng(4))
     return part
-
-
-@pytest.mark.parametrize('kind', CLASSES)
-def test_size_zero_is_nothing(kind):
-    part, true, now = made(kind, 0.0), fresh(), instant()
-    if isinstance(part, Battery):
-        for k in range(2000):
-            part.drain(0.01 * k, 0.01, now.speeds / HOVER)
-        assert not part.recorded and part.ratio == 1.0
-        assert part.gain(now.speeds / HOVER) == pytest.approx(1.0)
-        return
-    part.alter(true, PARAMS)
-    assert true['mass'] == PARAMS['mass'] and part.mass(15.0) == 0.0
-    for _ in range(100):
-        assert np.ones(4) * part.gain(now) == pytest.approx(np.ones(4), abs=1e-12)
-        assert np.ones(4) * part.torque(now) == pytest.approx(np.ones(4), abs=1e-12)
-        for extra in part.wrench(now) or ():
-            assert not np.any(extra)
-        part.after(0.01, np.eye(3), np.array([0.5, 0.0, 3.0]))
-
-
-@pytest.mark.parametrize('kind', CLASSES)
-def test_it_is_the_same_in_every_flight_of_a_case(kind):
-    assert made(kind).parameters == made(kind).parameters and made(kind).parameters
 
 
 def test_flow_from_ahead_lifts_rotors_across_more_than_that_from_behind():

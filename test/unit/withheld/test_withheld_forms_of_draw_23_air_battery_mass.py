@@ -10,7 +10,6 @@ from scipy.spatial.transform import Rotation
 from test_withheld_forms import fresh, HOVER, instant, PARAMS, PLACES
 from test_withheld_forms_of_draw_15 import turning
 
-from withheld.actuators import Battery
 from withheld.constants import GRAVITY
 from withheld.forms.brushes import OpenLoop
 from withheld.forms.cinewhoops import Choked
@@ -23,7 +22,6 @@ from withheld.forms.tethers import Tethered
 from withheld.forms.windings import Warmed
 
 REST = np.zeros(3)
-CLASSES = [Upwashed, Downloaded, Choked, Grated, OpenLoop, Kinetic, Warmed, Tethered, Rimed]
 
 
 def still(**others):
@@ -34,30 +32,6 @@ def made(kind, size=2.0, seed=3):
     part = kind(size, PARAMS, np.random.default_rng(seed))
     part.begin(np.random.default_rng(seed + 1))
     return part
-
-
-@pytest.mark.parametrize('kind', CLASSES)
-def test_size_zero_is_nothing(kind):
-    part, true, now = made(kind, 0.0), fresh(), instant()
-    if isinstance(part, Battery):
-        for k in range(2000):
-            part.drain(0.01 * k, 0.01, now.speeds / HOVER)
-        assert not part.recorded and part.ratio == 1.0
-        assert part.gain(now.speeds / HOVER) == pytest.approx(1.0)
-        return
-    part.alter(true, PARAMS)
-    assert true['mass'] == PARAMS['mass'] and part.mass(15.0) == 0.0
-    for _ in range(100):
-        assert np.ones(4) * part.gain(now) == pytest.approx(np.ones(4), abs=1e-12)
-        assert np.ones(4) * part.torque(now) == pytest.approx(np.ones(4), abs=1e-12)
-        for extra in part.wrench(now) or ():
-            assert not np.any(extra)
-        part.after(0.01, np.eye(3), np.array([0.5, 0.0, 3.0]))
-
-
-@pytest.mark.parametrize('kind', CLASSES)
-def test_it_is_the_same_in_every_flight_of_a_case(kind):
-    assert made(kind).parameters == made(kind).parameters and made(kind).parameters
 
 
 @pytest.mark.parametrize('kind', [Upwashed, Downloaded])

@@ -47,22 +47,6 @@ def stepped(motor, begin, end, step=0.0005, seconds=1.0):
     return np.array(turns)
 
 
-@pytest.mark.parametrize('kind', [Averaged, Ramped, Coalesced, Throttled, Relieved, Winged,
-                                  Skidded, Alley, Lulled])
-def test_size_zero_is_nothing_and_every_flight_of_a_case_has_the_same(kind):
-    part, command, now = part_of(kind, 0.0), HOVER * np.array([1.2, 0.8, 1.0, 1.1]), instant()
-    if kind in (Averaged, Ramped):
-        assert part.turn(np.full(4, HOVER), command, 0.002) == pytest.approx(command)
-    elif kind in (Coalesced, Throttled):
-        [(duration, given)] = part.pass_on(0.0, command, 0.01)
-        assert duration == pytest.approx(0.01) and np.array_equal(given, command)
-    elif kind in (Alley, Lulled):
-        assert not np.any(part.wind(2.0, now.position))
-    else:
-        assert not np.any(part.wrench(now))
-    assert part_of(kind, 2.0).parameters == part_of(kind, 2.0).parameters != {}
-
-
 @pytest.mark.parametrize('kind', [Averaged, Ramped])
 def test_a_command_that_is_held_is_reached_and_kept(kind):
     motor = kind(2.0, PARAMS, None)
