@@ -202,8 +202,10 @@ class _Search:
                                for column in cause.columns})
         self.rows = rows_of(self.all_causes, self.nuisances, self.columns, len(self.flights))
         best = self.best.chosen if self.best else ()
+        stood_at = set()
         for turn in range(ROUNDS):
             self.stand_at(best)
+            stood_at.add(best)
             self.judge(best)
             self.ranked = beam(self.quadratic, {cause: self.rows[cause] for cause in
                                                 (*self.causes, *self.nuisances)}, self.rules)
@@ -211,7 +213,8 @@ class _Search:
             self.best = self.order()[0]
             on_progress((turn + 1) / ROUNDS)
             # Sets that are about alike would only take turns, each the best around the other.
-            if self.best.evidence <= self.judge(best).evidence + self.rules.alike:
+            if (self.best.chosen in stood_at
+                    or self.best.evidence <= self.judge(best).evidence + self.rules.alike):
                 break
             best = self.best.chosen
 
