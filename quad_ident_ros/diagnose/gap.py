@@ -26,6 +26,7 @@ AT_ONCE = 2048                  # predictions that memory holds along their whol
 NOISE_STARTS = 60               # starts at which the noise is carried along
 DRAWS = 400                     # of the bootstrap
 LEAST = 0.01                    # of the noise's gap: less than that above it counts as 0
+CLEAR = 0.25                    # of the predictions, at least, are looked at: half the precision
 
 
 def horizon_of(tracks: Sequence[Track], rules: Rules) -> float:
@@ -41,9 +42,10 @@ class Noise:
     white (12,): what of the deviation changes from sample to sample.
     Tilt and drift stay the same over a prediction. The drift (m/s) is the error of the velocity
     that does, beside that in the deviation. The tilt (rad) is that of the attitude: a vehicle
-    whose attitude is taken from the record is pulled sideways by it. The walk (3,) (rad/s)^2/s is
-    the growth of the variance of the rate, by moments that differ from one sample to the next:
-    those of commands between the samples of a log, or finer than it.
+    whose attitude is taken from the record is pulled sideways by it. The walk (6,) is the growth
+    per s of the variance of the velocity (m/s)^2 and the rate (rad/s)^2, by forces and moments
+    that differ from one sample to the next: those of commands between the samples of a log, or
+    finer than it.
     """
 
     deviation: np.ndarray
@@ -66,10 +68,15 @@ def ends(track: Track, vehicle: Vehicle, z: np.ndarray, horizon: float,
     """
     Return the Ends of predictions along a Track with a parameter vector z (Z,).
 
-    Position and velocity are those given the recorded attitude where the Track has a guide.
+    Position and velocity are those given the recorded attitude where the Track has a guide. Nobody
+    knows the commands of rows that were lost, so that predictions over them say little of a model:
+    only those over the fewest count, CLEAR of all or, where more are over none, all of these.
     """
     flight = flight_of(track, horizon, EVERY)
     first = flight.first[flight.seen[flight.first + flight.count].all(axis=1)]
+    lost = np.concatenate([[0], np.cumsum(~flight.seen.any(axis=1))])
+    over = lost[first + flight.count] - lost[first]
+    first = first[over <= np.quantile(over, CLEAR, method='higher')]
     predicted = [predictor(flight, vehicle, z, flight.states[part], part,
                            flight.count)[:, -1].copy()
                  for part in np.split(first, range(AT_ONCE, len(first), AT_ONCE))]
@@ -124,12 +131,14 @@ def noise_gap(track: Track, vehicle: Vehicle, z: np.ndarray, noise: Noise, horiz
     pull = 2.0 * (vehicle.gravity * noise.tilt) ** 2    # of both horizontal axes
     found['velocity'] += pull * horizon ** 2
     found['position'] += pull * (horizon ** 2 / 2.0) ** 2 + 3.0 * (noise.drift * horizon) ** 2
-    # A walk of the rate, integrated; where the attitude is predicted, it pulls sideways.
-    walk = float(np.sum(noise.walk))
-    found['rate'] += walk * horizon
-    found['attitude'] += walk * horizon ** 3 / 3.0
+    # Random walks, integrated; where the attitude is predicted, that of the rate pulls sideways.
+    pushed, turned = (float(np.sum(part)) for part in np.split(noise.walk, 2))
+    found['velocity'] += pushed * horizon
+    found['position'] += pushed * horizon ** 3 / 3.0
+    found['rate'] += turned * horizon
+    found['attitude'] += turned * horizon ** 3 / 3.0
     if flight.guide is None:
-        sideways = vehicle.gravity ** 2 * float(np.sum(noise.walk[:2]))
+        sideways = vehicle.gravity ** 2 * float(np.sum(noise.walk[3:5]))
         found['velocity'] += sideways * horizon ** 5 / 20.0
         found['position'] += sideways * horizon ** 7 / 252.0
     return {name: float(np.sqrt(value)) for name, value in found.items()}

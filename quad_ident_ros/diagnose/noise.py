@@ -16,6 +16,8 @@ from quad_ident_ros.greybox.errors import GROUPS
 from quad_ident_ros.greybox.flights import Track
 from quad_ident_ros.greybox.kinematics import measurement_noise
 
+WALKING = np.r_[GROUPS['velocity'], GROUPS['rate']]     # the errors of Noise.walk
+
 
 def noise_of(selection: Selection, intake: Intake, rules: Rules) -> Noise:
     """
@@ -34,8 +36,8 @@ def noise_of(selection: Selection, intake: Intake, rules: Rules) -> Noise:
     mean = float(np.mean(white[attitude] ** 2)) * period / horizon_of(intake.flights, rules)
     levels = levels_itself(best, intake.flights, rules)
     level, drift = (rules.levelling, max(rules.drift, drift)) if levels else (0.0, drift)
-    walk = rate_walk([(raw[..., GROUPS['rate']], flight.period) for raw, flight in
-                      zip(best.residuals, intake.flights, strict=True)], rules)
+    walk = random_walk([(raw[..., WALKING], flight.period) for raw, flight in
+                        zip(best.residuals, intake.flights, strict=True)], rules)
     return Noise(deviation, white, float(np.sqrt(steady + mean + level ** 2)), drift, walk)
 
 
@@ -53,16 +55,16 @@ def noise_in(track: Track, z: np.ndarray, noise: Noise) -> Noise:
                    tilt=float(np.sqrt(noise.tilt ** 2 + np.mean(more))))
 
 
-def rate_walk(parts: Sequence[tuple[np.ndarray, float]], rules: Rules) -> np.ndarray:
+def random_walk(parts: Sequence[tuple[np.ndarray, float]], rules: Rules) -> np.ndarray:
     """
-    Return the growth (3,) (rad/s)^2/s of the variance of the rate by independent moments.
+    Return the growth (K,) per s of the variance of K errors by independent forces or moments.
 
     The mean square change of an error over a lag is that of noise, flat beyond its memory, of
-    independent moments, in proportion to the lag, and of slow ones, to its square. The slopes
+    independent forces, in proportion to the lag, and of slow ones, to its square. The slopes
     between three lags tell these apart; 0 where what remains does not show. Where it is less than
     none, by more than a standard error, noise swings between the samples and is remembered for
     longer: the lags are twice as long then.
-    Args: parts: residuals (B, count + 1, 3) of the rate and the period s of each flight.
+    Args: parts: residuals (B, count + 1, K) and the period s of each flight.
     """
     usual, longer = (_slopes(parts, rules, times) for times in (1, 2))
     swings = usual[0][1] < -rules.hidden * usual[1][1]
@@ -75,7 +77,7 @@ def rate_walk(parts: Sequence[tuple[np.ndarray, float]], rules: Rules) -> np.nda
 def _slopes(parts: Sequence[tuple[np.ndarray, float]], rules: Rules, times: int
             ) -> tuple[np.ndarray, np.ndarray]:
     """
-    Return slopes (2, 3) of the mean square change of an error, and their standard errors.
+    Return slopes (2, K) of the mean square change of errors, and their standard errors.
 
     By rows between the later two of three lags, which are so many times those of the rules; and
     without what grows with the square of the lag. 0 where rollouts are too short.
@@ -84,7 +86,7 @@ def _slopes(parts: Sequence[tuple[np.ndarray, float]], rules: Rules, times: int
     for errors, period in parts:
         near, mid, far = lags = [times * lag for lag in _lags(period, rules)]
         if far >= errors.shape[1]:
-            return np.zeros((2, 3)), np.zeros((2, 3))
+            return np.zeros((2, errors.shape[2])), np.zeros((2, errors.shape[2]))
         change = [np.mean((errors[:, lag:] - errors[:, :-lag]) ** 2, axis=1) for lag in lags]
         early = (change[1] - change[0]) / ((mid - near) * period)
         late = (change[2] - change[1]) / ((far - mid) * period)
@@ -92,7 +94,7 @@ def _slopes(parts: Sequence[tuple[np.ndarray, float]], rules: Rules, times: int
     slopes = np.concatenate(each, axis=1)
     count = slopes.shape[1]
     return slopes.mean(axis=1), slopes.std(axis=1, ddof=1) / np.sqrt(count) if count > 1 else (
-        np.full((2, 3), np.inf))
+        np.full(slopes.shape[::2], np.inf))
 
 
 def _lags(period: float, rules: Rules) -> tuple[int, ...]:

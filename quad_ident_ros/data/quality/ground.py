@@ -95,7 +95,7 @@ def standing(record: FlightRecord, vehicle: Vehicle) -> np.ndarray:
     Return whether the vehicle stands on the ground at each sample, (N,) of bool.
 
     It does where it keeps still for LEAST with too little thrust to hover, and around that for
-    as long as it stays at that height; without a height for as long as it keeps still with too
+    as long as it stays at that height, or has struck the ground there; without a height for as long as it keeps still with too
     little thrust to leave the ground, and until it moves. All False where the record has no
     commands or velocity.
     """
@@ -113,6 +113,7 @@ def standing(record: FlightRecord, vehicle: Vehicle) -> np.ndarray:
     flying = np.zeros(len(record), bool)
     for first, last in _runs(moving & (thrust > LIFT * usual)):
         flying[first:last + 1] = (last - first) * period > LASTS
+    struck = _struck(record, thrust / vehicle.mass)
     for first, last in _runs(~moving & (thrust < IDLE * usual)):
         # In samples, too: a gap in the record is no time on the ground.
         if min(record.t[last] - record.t[first], (last - first) * period) < LEAST:
@@ -121,11 +122,32 @@ def standing(record: FlightRecord, vehicle: Vehicle) -> np.ndarray:
             begin, end = _around(low, first, last)
             grounded[begin:_moves_from(record, first, last, end)] = True
             continue
-        near = (np.abs(height - np.median(height[first:last + 1])) < CLEAR) & ~flying
+        low_down = np.abs(height - np.median(height[first:last + 1])) < CLEAR
+        near = low_down & ~flying
+        for begin, end in _runs(low_down):
+            # What has struck the ground slides and hops on it, whatever its rotors do.
+            near[begin:end + 1] |= np.maximum.accumulate(struck[begin:end + 1])
         for begin, end in _runs(near):
             if begin <= last and end >= first:
                 grounded[min(begin, first):max(end, last) + 1] = True
     return grounded
+
+
+def _struck(record: FlightRecord, thrust: np.ndarray) -> np.ndarray:
+    """
+    Return where a blow has just stopped the vehicle, (N,) of bool: its velocity jumps for good.
+
+    Args: thrust (N,) m/s^2, the commanded one over the mass.
+    """
+    found = np.zeros(len(record), bool)
+    if len(record) > 3:
+        velocity = record.stack('vx', 'vy', 'vz')
+        jump = np.linalg.norm(np.diff(velocity, axis=0), axis=1)[1:-1]
+        stays = np.linalg.norm(velocity[3:] - velocity[:-3], axis=1)
+        most = BLOW * float(np.quantile(thrust, STRONG)) * np.diff(record.t)[1:-1]
+        speed = np.linalg.norm(velocity, axis=1)
+        found[2:-1] = (np.minimum(jump, stays) > most) & (speed[2:-1] < speed[1:-2])
+    return found
 
 
 def carried(record: FlightRecord, vehicle: Vehicle, stood: np.ndarray) -> np.ndarray:

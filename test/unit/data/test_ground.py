@@ -191,6 +191,28 @@ def test_a_flight_at_the_height_of_the_stand_is_kept(noise):
     assert part.t[-1] == pytest.approx(STAND + 12.0, abs=1.0)
 
 
+@pytest.mark.parametrize('strikes', [True, False])
+def test_what_has_struck_the_ground_slides_on_it_whatever_its_rotors_do(flight, strikes):
+    """A landing at 2 m/s and a slide with the thrust of a hover, or a flight as low as that."""
+    slide = flight.slice(0, 300)
+    t, last = slide.t - slide.t[0], {name: float(values[-1])
+                                     for name, values in flight.columns.items()}
+    speed = 0.4 + 0.1 * np.sin(3.0 * t)
+    still = {'vx': speed, 'pz': last['pz'] + 0.01 * np.sin(9.0 * t) - 0.05,
+             **{f'cmd{j}': np.full(len(t), hover_of(VEHICLE)) for j in range(1, 5)},
+             **{name: 0.0 * t for name in ('vy', 'vz', 'wx', 'wy', 'wz', 'qx', 'qy', 'qz')},
+             'qw': 1.0 + 0.0 * t}
+    fast = flight.columns['vx'].copy()
+    fast[-60:] = np.linspace(fast[-61], 2.0 if strikes else speed[0], 60)
+    lands = after_another(changed(flight, vx=fast), changed(slide, **still))
+    rest = {name: np.full(200, value[-1] if name.startswith(('p', 'q')) else 0.0)
+            for name, value in lands.columns.items()}
+    stand = FlightRecord(flight.period() * np.arange(200), {
+        **rest, 'vbat': np.full(200, last['vbat'])})
+    part = airborne(after_another(lands, stand), VEHICLE)
+    assert len(part) == pytest.approx(len(flight) if strikes else len(lands), abs=10)
+
+
 def test_a_hover_amid_brisk_flight_is_no_standing(flight):
     """Where most of a flight needs twice the weight, the weight is half of what is usual."""
     brisk = {f'cmd{j}': 1.5 * flight.columns[f'cmd{j}'] for j in range(1, 5)}

@@ -1,12 +1,12 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Moments that no logged command explains: how fast the variance of the rate grows by them."""
+"""Forces and moments that no logged command explains: how fast variances grow by them."""
 
 import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from quad_ident_ros.diagnose.noise import rate_walk
+from quad_ident_ros.diagnose.noise import random_walk
 from quad_ident_ros.diagnose.rules import RULES
 
 PERIOD, COUNT, ROLLOUTS, SIGMA = 0.01, 50, 240, 0.01
@@ -23,19 +23,19 @@ def white(seed=1, period=PERIOD):
 def test_a_random_walk_grows_by_what_its_steps_have(growth, period):
     noise = white(period=period)
     steps = np.sqrt(growth * period) * np.random.default_rng(2).standard_normal(noise.shape)
-    found = rate_walk([(noise + np.cumsum(steps, axis=1), period)], RULES)
+    found = random_walk([(noise + np.cumsum(steps, axis=1), period)], RULES)
     # The smaller of two slopes is taken: a little low where both are as noisy.
     assert np.all((0.5 * growth < found) & (found < 1.25 * growth))
 
 
 def test_noise_of_the_sensor_is_no_walk():
-    assert np.all(rate_walk([(white(), PERIOD)], RULES) == 0.0)
+    assert np.all(random_walk([(white(), PERIOD)], RULES) == 0.0)
 
 
 def test_filtered_noise_is_no_walk():
     share = 1.0 - np.exp(-2.0 * np.pi * 20.0 * PERIOD)
     filtered = lfilter([share], [1.0, share - 1.0], white(), axis=1)[:, 10:]
-    assert np.all(rate_walk([(filtered, PERIOD)], RULES) == 0.0)
+    assert np.all(random_walk([(filtered, PERIOD)], RULES) == 0.0)
 
 
 @pytest.mark.parametrize(('size', 'growth'), [(4.0, 5e-3), (4.0, 1e-2), (6.0, 1e-2), (8.0, 2e-2)])
@@ -44,9 +44,9 @@ def test_a_walk_shows_beside_a_swing_between_the_samples(size, growth):
     noise = size * SIGMA * np.random.default_rng(5).standard_normal((ROLLOUTS, 2 * COUNT + 1, 3))
     swing = lfilter([0.3], [1.0, 0.1, 0.64], noise, axis=1)[:, COUNT:]
     steps = np.sqrt(growth * PERIOD) * np.random.default_rng(2).standard_normal(swing.shape)
-    found = rate_walk([(swing + np.cumsum(steps, axis=1), PERIOD)], RULES)
+    found = random_walk([(swing + np.cumsum(steps, axis=1), PERIOD)], RULES)
     assert np.all((0.5 * growth < found) & (found < 1.25 * growth))
-    assert np.all(rate_walk([(swing, PERIOD)], RULES) < 0.1 * growth)
+    assert np.all(random_walk([(swing, PERIOD)], RULES) < 0.1 * growth)
 
 
 @pytest.mark.parametrize('frequency', [0.0, 0.5, 1.0])
@@ -57,7 +57,7 @@ def test_slow_moments_are_little_of_a_walk(frequency):
     moment = np.cos(2.0 * np.pi * frequency * t[:, None] + phase)
     error = np.cumsum(moment, axis=1) * PERIOD
     made = np.mean((error[:, -1] - error[:, 0]) ** 2, axis=0)
-    assert np.all(rate_walk([(error + white(), PERIOD)], RULES) * t[-1] < 0.1 * made)
+    assert np.all(random_walk([(error + white(), PERIOD)], RULES) * t[-1] < 0.1 * made)
 
 
 def test_lags_are_as_much_longer_in_a_slow_log():
@@ -66,14 +66,14 @@ def test_lags_are_as_much_longer_in_a_slow_log():
     noise = 6.0 * SIGMA * np.random.default_rng(5).standard_normal((ROLLOUTS, 40, 3))
     swing = lfilter([0.3], [1.0, 0.8, 0.16], noise, axis=1)[:, 29:]
     steps = np.sqrt(growth * period) * np.random.default_rng(2).standard_normal(swing.shape)
-    found = rate_walk([(swing + np.cumsum(steps, axis=1), period)], RULES)
+    found = random_walk([(swing + np.cumsum(steps, axis=1), period)], RULES)
     assert np.all((0.5 * growth < found) & (found < 1.5 * growth))
 
 
 def test_rollouts_that_are_too_short_tell_nothing():
-    assert np.all(rate_walk([(white()[:, :5], PERIOD)], RULES) == 0.0)
+    assert np.all(random_walk([(white()[:, :5], PERIOD)], RULES) == 0.0)
 
 
 def test_a_single_rollout_tells_nothing():
     walk = np.cumsum(white()[:1], axis=1)
-    assert np.all(rate_walk([(walk, PERIOD)], RULES) == 0.0)
+    assert np.all(random_walk([(walk, PERIOD)], RULES) == 0.0)
