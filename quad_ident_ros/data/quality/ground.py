@@ -95,9 +95,9 @@ def standing(record: FlightRecord, vehicle: Vehicle) -> np.ndarray:
     Return whether the vehicle stands on the ground at each sample, (N,) of bool.
 
     It does where it keeps still for LEAST with too little thrust to hover, and around that for
-    as long as it stays at that height, or has struck the ground there; without a height for as long as it keeps still with too
-    little thrust to leave the ground, and until it moves. All False where the record has no
-    commands or velocity.
+    as long as it stays at that height, or has struck the ground there; without a height for as
+    long as it keeps still with too little thrust to leave the ground, and until it moves. All
+    False where the record has no commands or velocity.
     """
     speed = _speed(record)
     thrust = _thrust(record, vehicle)

@@ -200,7 +200,7 @@ def test_what_has_struck_the_ground_slides_on_it_whatever_its_rotors_do(flight, 
     speed = 0.4 + 0.1 * np.sin(3.0 * t)
     still = {'vx': speed, 'pz': last['pz'] + 0.01 * np.sin(9.0 * t) - 0.05,
              **{f'cmd{j}': np.full(len(t), hover_of(VEHICLE)) for j in range(1, 5)},
-             **{name: 0.0 * t for name in ('vy', 'vz', 'wx', 'wy', 'wz', 'qx', 'qy', 'qz')},
+             **dict.fromkeys(('vy', 'vz', 'wx', 'wy', 'wz', 'qx', 'qy', 'qz'), 0.0 * t),
              'qw': 1.0 + 0.0 * t}
     fast = flight.columns['vx'].copy()
     fast[-60:] = np.linspace(fast[-61], 2.0 if strikes else speed[0], 60)
