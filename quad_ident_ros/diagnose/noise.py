@@ -37,7 +37,8 @@ def noise_of(selection: Selection, intake: Intake, rules: Rules) -> Noise:
     levels = levels_itself(best, intake.flights, rules)
     level, drift = (rules.levelling, max(rules.drift, drift)) if levels else (0.0, drift)
     walk = random_walk([(raw[..., WALKING], flight.period) for raw, flight in
-                        zip(best.residuals, intake.flights, strict=True)], rules)
+                        zip(best.residuals, intake.flights, strict=True)],
+                       deviation[WALKING], rules)
     return Noise(deviation, white, float(np.sqrt(steady + mean + level ** 2)), drift, walk)
 
 
@@ -55,7 +56,8 @@ def noise_in(track: Track, z: np.ndarray, noise: Noise) -> Noise:
                    tilt=float(np.sqrt(noise.tilt ** 2 + np.mean(more))))
 
 
-def random_walk(parts: Sequence[tuple[np.ndarray, float]], rules: Rules) -> np.ndarray:
+def random_walk(parts: Sequence[tuple[np.ndarray, float]], deviation: np.ndarray, rules: Rules
+                ) -> np.ndarray:
     """
     Return the growth (K,) per s of the variance of K errors by independent forces or moments.
 
@@ -63,15 +65,29 @@ def random_walk(parts: Sequence[tuple[np.ndarray, float]], rules: Rules) -> np.n
     independent forces, in proportion to the lag, and of slow ones, to its square. The slopes
     between three lags tell these apart; 0 where what remains does not show. Where it is less than
     none, by more than a standard error, noise swings between the samples and is remembered for
-    longer: the lags are twice as long then.
-    Args: parts: residuals (B, count + 1, K) and the period s of each flight.
+    longer: the lags are twice as long then. Noise that is remembered for longer than the lags
+    changes in proportion to them, too, but by no more than twice its variance.
+    Args: parts: residuals (B, count + 1, K) and the period s of each flight; deviation (K,): of
+    their noise.
     """
     usual, longer = (_slopes(parts, rules, times) for times in (1, 2))
     swings = usual[0][1] < -rules.hidden * usual[1][1]
     mean, error = (np.where(swings, *pair) for pair in zip(longer, usual, strict=True))
     least = np.argmin(mean, axis=0)[None]
     value, spread = (np.take_along_axis(table, least, axis=0)[0] for table in (mean, error))
-    return np.where(value > rules.hidden * spread, value, 0.0)
+    most = _beyond(parts, deviation, rules)
+    return np.where(value > rules.hidden * spread, np.clip(value, 0.0, most), 0.0)
+
+
+def _beyond(parts: Sequence[tuple[np.ndarray, float]], deviation: np.ndarray, rules: Rules
+            ) -> np.ndarray:
+    """Return the growth (K,) per s beyond all that noise makes of changes over the longest lag."""
+    each = []
+    for errors, period in parts:
+        lag = min(_lags(period, rules)[-1], errors.shape[1] - 1)
+        change = np.mean((errors[:, lag:] - errors[:, :-lag]) ** 2, axis=1)
+        each.append((change - 2.0 * deviation ** 2) / (lag * period))
+    return np.maximum(np.concatenate(each).mean(axis=0), 0.0)
 
 
 def _slopes(parts: Sequence[tuple[np.ndarray, float]], rules: Rules, times: int
