@@ -16,8 +16,6 @@ from quad_ident_ros.greybox.errors import GROUPS
 from quad_ident_ros.greybox.flights import Track
 from quad_ident_ros.greybox.kinematics import measurement_noise
 
-WALKING = np.r_[GROUPS['velocity'], GROUPS['rate']]     # the errors of Noise.walk
-
 
 def noise_of(selection: Selection, intake: Intake, rules: Rules) -> Noise:
     """
@@ -36,9 +34,12 @@ def noise_of(selection: Selection, intake: Intake, rules: Rules) -> Noise:
     mean = float(np.mean(white[attitude] ** 2)) * period / horizon_of(intake.flights, rules)
     levels = levels_itself(best, intake.flights, rules)
     level, drift = (rules.levelling, max(rules.drift, drift)) if levels else (0.0, drift)
-    walk = random_walk([(raw[..., WALKING], flight.period) for raw, flight in
-                        zip(best.residuals, intake.flights, strict=True)],
-                       deviation[WALKING], rules)
+    # A velocity comes from a filter that remembers; beyond its low pass a gyro does not.
+    walks = [random_walk([(raw[..., GROUPS[name]], flight.period) for raw, flight in
+                          zip(best.residuals, intake.flights, strict=True)], remembered, rules)
+             for name, remembered in (('velocity', deviation[GROUPS['velocity']]),
+                                      ('rate', np.zeros(3)))]
+    walk = np.concatenate(walks)
     return Noise(deviation, white, float(np.sqrt(steady + mean + level ** 2)), drift, walk)
 
 
@@ -56,7 +57,7 @@ def noise_in(track: Track, z: np.ndarray, noise: Noise) -> Noise:
                    tilt=float(np.sqrt(noise.tilt ** 2 + np.mean(more))))
 
 
-def random_walk(parts: Sequence[tuple[np.ndarray, float]], deviation: np.ndarray, rules: Rules
+def random_walk(parts: Sequence[tuple[np.ndarray, float]], remembered: np.ndarray, rules: Rules
                 ) -> np.ndarray:
     """
     Return the growth (K,) per s of the variance of K errors by independent forces or moments.
@@ -67,21 +68,21 @@ def random_walk(parts: Sequence[tuple[np.ndarray, float]], deviation: np.ndarray
     none, by more than a standard error, noise swings between the samples and is remembered for
     longer: the lags are twice as long then. Noise that is remembered for longer than the lags
     changes in proportion to them, too, but by no more than twice its variance.
-    Args: parts: residuals (B, count + 1, K) and the period s of each flight; deviation (K,): of
-    their noise.
+    Args: parts: residuals (B, count + 1, K) and the period s of each flight; remembered (K,):
+    deviation of such noise.
     """
     usual, longer = (_slopes(parts, rules, times) for times in (1, 2))
     swings = usual[0][1] < -rules.hidden * usual[1][1]
     mean, error = (np.where(swings, *pair) for pair in zip(longer, usual, strict=True))
     least = np.argmin(mean, axis=0)[None]
     value, spread = (np.take_along_axis(table, least, axis=0)[0] for table in (mean, error))
-    most = _beyond(parts, deviation, rules)
+    most = _beyond(parts, remembered, rules)
     return np.where(value > rules.hidden * spread, np.clip(value, 0.0, most), 0.0)
 
 
 def _beyond(parts: Sequence[tuple[np.ndarray, float]], deviation: np.ndarray, rules: Rules
             ) -> np.ndarray:
-    """Return the growth (K,) per s beyond all that noise makes of changes over the longest lag."""
+    """Return the growth (K,) per s beyond what noise makes of changes over the longest lag."""
     each = []
     for errors, period in parts:
         lag = min(_lags(period, rules)[-1], errors.shape[1] - 1)

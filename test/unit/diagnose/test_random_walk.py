@@ -10,7 +10,7 @@ from quad_ident_ros.diagnose.noise import random_walk
 from quad_ident_ros.diagnose.rules import RULES
 
 PERIOD, COUNT, ROLLOUTS, SIGMA = 0.01, 50, 240, 0.01
-DEVIATION = np.full(3, SIGMA)
+FORGOTTEN = np.zeros(3)
 
 
 def white(seed=1, period=PERIOD):
@@ -24,19 +24,19 @@ def white(seed=1, period=PERIOD):
 def test_a_random_walk_grows_by_what_its_steps_have(growth, period):
     noise = white(period=period)
     steps = np.sqrt(growth * period) * np.random.default_rng(2).standard_normal(noise.shape)
-    found = random_walk([(noise + np.cumsum(steps, axis=1), period)], DEVIATION, RULES)
+    found = random_walk([(noise + np.cumsum(steps, axis=1), period)], FORGOTTEN, RULES)
     # The smaller of two slopes is taken: a little low where both are as noisy.
     assert np.all((0.5 * growth < found) & (found < 1.25 * growth))
 
 
 def test_noise_of_the_sensor_is_no_walk():
-    assert np.all(random_walk([(white(), PERIOD)], DEVIATION, RULES) == 0.0)
+    assert np.all(random_walk([(white(), PERIOD)], FORGOTTEN, RULES) == 0.0)
 
 
 def test_filtered_noise_is_no_walk():
     share = 1.0 - np.exp(-2.0 * np.pi * 20.0 * PERIOD)
     filtered = lfilter([share], [1.0, share - 1.0], white(), axis=1)[:, 10:]
-    assert np.all(random_walk([(filtered, PERIOD)], DEVIATION, RULES) == 0.0)
+    assert np.all(random_walk([(filtered, PERIOD)], FORGOTTEN, RULES) == 0.0)
 
 
 @pytest.mark.parametrize('memory', [0.05, 0.1, 0.2, 0.3])
@@ -56,9 +56,9 @@ def test_a_walk_shows_beside_a_swing_between_the_samples(size, growth):
     noise = size * SIGMA * np.random.default_rng(5).standard_normal((ROLLOUTS, 2 * COUNT + 1, 3))
     swing = lfilter([0.3], [1.0, 0.1, 0.64], noise, axis=1)[:, COUNT:]
     steps = np.sqrt(growth * PERIOD) * np.random.default_rng(2).standard_normal(swing.shape)
-    found = random_walk([(swing + np.cumsum(steps, axis=1), PERIOD)], swing.std((0, 1)), RULES)
+    found = random_walk([(swing + np.cumsum(steps, axis=1), PERIOD)], FORGOTTEN, RULES)
     assert np.all((0.5 * growth < found) & (found < 1.25 * growth))
-    assert np.all(random_walk([(swing, PERIOD)], swing.std((0, 1)), RULES) < 0.1 * growth)
+    assert np.all(random_walk([(swing, PERIOD)], FORGOTTEN, RULES) < 0.1 * growth)
 
 
 @pytest.mark.parametrize('frequency', [0.0, 0.5, 1.0])
@@ -69,7 +69,7 @@ def test_slow_moments_are_little_of_a_walk(frequency):
     moment = np.cos(2.0 * np.pi * frequency * t[:, None] + phase)
     error = np.cumsum(moment, axis=1) * PERIOD
     made = np.mean((error[:, -1] - error[:, 0]) ** 2, axis=0)
-    assert np.all(random_walk([(error + white(), PERIOD)], DEVIATION, RULES) * t[-1] < 0.1 * made)
+    assert np.all(random_walk([(error + white(), PERIOD)], FORGOTTEN, RULES) * t[-1] < 0.1 * made)
 
 
 def test_lags_are_as_much_longer_in_a_slow_log():
@@ -78,14 +78,14 @@ def test_lags_are_as_much_longer_in_a_slow_log():
     noise = 6.0 * SIGMA * np.random.default_rng(5).standard_normal((ROLLOUTS, 40, 3))
     swing = lfilter([0.3], [1.0, 0.8, 0.16], noise, axis=1)[:, 29:]
     steps = np.sqrt(growth * period) * np.random.default_rng(2).standard_normal(swing.shape)
-    found = random_walk([(swing + np.cumsum(steps, axis=1), period)], swing.std((0, 1)), RULES)
+    found = random_walk([(swing + np.cumsum(steps, axis=1), period)], FORGOTTEN, RULES)
     assert np.all((0.5 * growth < found) & (found < 1.5 * growth))
 
 
 def test_rollouts_that_are_too_short_tell_nothing():
-    assert np.all(random_walk([(white()[:, :5], PERIOD)], DEVIATION, RULES) == 0.0)
+    assert np.all(random_walk([(white()[:, :5], PERIOD)], FORGOTTEN, RULES) == 0.0)
 
 
 def test_a_single_rollout_tells_nothing():
     walk = np.cumsum(white()[:1], axis=1)
-    assert np.all(random_walk([(walk, PERIOD)], DEVIATION, RULES) == 0.0)
+    assert np.all(random_walk([(walk, PERIOD)], FORGOTTEN, RULES) == 0.0)
