@@ -10,43 +10,58 @@ from withheld.constants import hover_speed
 from withheld.forms.motors import TIME, towards
 
 
-class Belted(Motor):
+class Linear(Motor):
+    """
+    Rotors by a linear law of three states, of which one starts with the speed and one with none.
+
+    The law is a matrix, `_slopes`, of what is beside the speed, of the speed, and of a third one;
+    the first two are less what is commanded.
+    """
+
+    def __init__(self, size, params, rng):
+        """Set the mean time."""
+        self.parameters = {'time': TIME * size}
+        self._beside, self._third, self._passes = None, 0.0, {}
+
+    def turn(self, speeds, command, step):
+        """Return the speeds, by the solution for a held command."""
+        if not self.parameters['time']:
+            return command
+        beside = speeds if self._beside is None else self._beside
+        off = np.array([beside - command, speeds - command, self._third + 0.0 * speeds])
+        off = self._passed(step) @ off
+        self._beside, self._third = command + off[0], off[2]
+        return command + off[1]
+
+    def _passed(self, step):
+        """Return what a step makes of the states (3, 3)."""
+        key = round(step, 9)
+        if key not in self._passes:
+            self._passes[key] = expm(step * np.array(self._slopes(self.parameters['time'])))
+        return self._passes[key]
+
+    def _slopes(self, time):
+        """Return the slopes (3, 3) of the states, by the states, of a mean time."""
+        raise NotImplementedError
+
+
+class Belted(Linear):
     """
     Propellers that are driven by soft belts: they come after their motors, and swing past them.
 
     A belt pulls with its stretch and with what it stretches by in a second; the controllers hold
     the motors themselves. G. Ellis, R. D. Lorenz, Resonant load control methods for industrial
     servo drives, IEEE Industry Applications Society Annual Meeting, 2000. As quadrotors with one
-    motor have it in practice.
+    motor have it in practice. The mean time is that of the motors: a belt adds none.
     """
 
     RATE, DAMPING = 1.6, 0.15   # over the time of the motor, of belt and propeller; of critical
 
-    def __init__(self, size, params, rng):
-        """Set the time constant of the motors, which is the mean delay: a belt adds none."""
-        self.parameters = {'time': TIME * size}
-        self._motor, self._stretch, self._passes = None, 0.0, {}
-
-    def turn(self, speeds, command, step):
-        """Return the speeds, by the solution for a held command."""
-        if not self.parameters['time']:
-            return command
-        motor = speeds if self._motor is None else self._motor
-        off = np.array([motor - command, speeds - command, self._stretch + 0.0 * speeds])
-        off = self._passed(step) @ off
-        self._motor, self._stretch = command + off[0], off[2]
-        return command + off[1]
-
-    def _passed(self, step):
-        """Return what a step makes of motor, propeller and stretch (3, 3)."""
-        key = round(step, 9)
-        if key not in self._passes:
-            time = self.parameters['time']
-            rate = self.RATE / time
-            damps = 2.0 * self.DAMPING * rate
-            self._passes[key] = expm(step * np.array([
-                [-1.0 / time, 0.0, 0.0], [damps, -damps, rate ** 2], [1.0, -1.0, 0.0]]))
-        return self._passes[key]
+    def _slopes(self, time):
+        """Return the slopes (3, 3) of motor, propeller and stretch."""
+        rate = self.RATE / time
+        damps = 2.0 * self.DAMPING * rate
+        return [[-1.0 / time, 0.0, 0.0], [damps, -damps, rate ** 2], [1.0, -1.0, 0.0]]
 
 
 class FieldWeakened(Motor):
