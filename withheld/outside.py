@@ -428,6 +428,32 @@ class Sandbag(Force):
             self.bag = np.array([*(self._place[:2] + reach / far * away), 0.0])
 
 
+class Bent(Influence):
+    """
+    A motor that a crash has bent aside: its thrust pushes the body across its arm, and turns it.
+
+    As the end of an arm of plate bends, or a tube turns in one clamp, in practice: mostly across
+    the arm, to either side. The other rotors stand upright.
+    """
+
+    ASIDE = 0.5                 # rad, at most, from across the arm
+
+    def __init__(self, size, rotors, weight, hover, rng):
+        """Draw which motor it is, and whereto it leans; take how far, rad."""
+        self.rotor = int(rng.integers(rotors))
+        self.aside = rng.uniform(-self.ASIDE, self.ASIDE) + np.pi * rng.integers(2)
+        self.lean, self.lift, self.hover = 0.04 * size, weight / rotors, hover
+
+    def wrench(self, now):
+        """Return what the lean changes of the force of the rotor, and the moment of that."""
+        place = now.places[self.rotor]
+        angle = np.arctan2(place[1], place[0]) + 0.5 * np.pi + self.aside
+        sine, cosine = np.sin(self.lean), np.cos(self.lean)
+        thrust = self.lift * (now.speeds[self.rotor] / self.hover) ** 2
+        force = thrust * np.array([sine * np.cos(angle), sine * np.sin(angle), cosine - 1.0])
+        return force, np.cross(place, force)
+
+
 # Each with what of the vehicle its size is measured by.
 KINDS = {'periodic_force': (Periodic, 'weight'), 'tether': (Tether, 'weight'),
          'updraft': (Updraft, 'weight'), 'thrust_exponent': (Exponent, 'hover'),
@@ -439,4 +465,4 @@ KINDS = {'periodic_force': (Periodic, 'weight'), 'tether': (Tether, 'weight'),
          'recoil': (Recoil, 'weight', 'radius'), 'keel': (Keel, 'weight', 'radius'),
          'twisted': (Twisted, 'weight', 'radius', 'hover'),
          'flywheel': (Flywheel, 'weight', 'radius'), 'carousel': (Carousel, 'mass'),
-         'sandbag': (Sandbag, 'weight')}
+         'sandbag': (Sandbag, 'weight'), 'bent': (Bent, 'rotors', 'weight', 'hover')}
