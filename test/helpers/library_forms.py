@@ -68,9 +68,14 @@ def of_battery(battery, params, places, hover, flight):
 
 
 def instants(places, flight):
-    """Return the Instants of a flight, level unless it has a 'rotation' (COUNT, 3, 3)."""
+    """
+    Return the Instants of a flight, level unless it has a 'rotation' (COUNT, 3, 3).
+
+    In one place unless it has a 'position' (COUNT, 3) m.
+    """
     turned = flight.get('rotation', np.broadcast_to(np.eye(3), (COUNT, 3, 3)))
-    return [Instant(flight['time'][k], np.zeros(3), flight['air'][k], turned[k],
+    place = flight.get('position', np.zeros((COUNT, 3)))
+    return [Instant(flight['time'][k], place[k], flight['air'][k], turned[k],
                     flight['rate'][k], flight['air'][k], flight['speeds'][k],
                     flight['heights'][k], places) for k in range(COUNT)]
 

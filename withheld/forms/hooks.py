@@ -19,8 +19,8 @@ class Preloaded(Influence):
 
     comparable = True
     beside = ('unknown',)       # what swings of it is no mass
-    YIELDS = 0.5                # m/s^2, beside the weight
-    FREQUENCY, DAMPING = 2.0 * np.pi * 2.0, 0.4     # rad/s; of the critical one
+    YIELDS = 0.3                # m/s^2, beside the weight
+    FREQUENCY, DAMPING = 2.0 * np.pi * 1.2, 0.3     # rad/s; of the critical one
     FINE = 0.0025               # s, the steps
 
     def __init__(self, size, params, rng):

@@ -17,7 +17,7 @@ class TipLosing(Thrust):
     """
 
     SHARE = 0.1                     # of what theory has
-    PITCH, INFLOW = 0.32, 0.09      # rad, of the blades; of the tips' speed, in hover
+    PITCH, INFLOW = 0.38, 0.13      # rad, of the blades; of the tips' speed, in hover
     TIPS = np.log(2.0)              # of the radius, for the inflow: 2 ln 2 over the blades
     LEAST = -0.9                    # of the induced velocity: momentum theory knows no faster sink
     ROUNDS = 6

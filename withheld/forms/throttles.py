@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Thrust curves of a wrong exponent of the throttle."""
+"""Throttle curves that are wrong, for all rotors together."""
 
 import numpy as np
 
@@ -9,13 +9,14 @@ from withheld.forms.body import signs
 from withheld.influence import Influence
 
 
-class Linearised(Influence):
+class Lifted(Influence):
     """
-    A thrust curve that an autopilot takes for more or less linear than it is, up to full throttle.
+    A throttle that an autopilot takes for other than it is where it begins, up to full throttle.
 
-    There it is right, for that was measured; below, it is off by a part that goes with the speed
-    instead of its square, so by the more, the slower. The factor for that is a parameter of
-    autopilots (ArduPilot's exponent of the motors, PX4's factor of the thrust model).
+    There it is right, for that was measured; below, it is off by a part that is the same at all
+    speeds, so by the more, the slower. It is a curve for the throttle of all rotors together,
+    before what turns the body is added, as those of pilots' radios are and of mixers that correct
+    the mean (ArduPilot's least spin of the motors, PX4's thrust model).
     """
 
     LEAST, SLOWEST = 1.3, 0.3       # of the hover speed: of full throttle; where it is no more
@@ -28,6 +29,6 @@ class Linearised(Influence):
         self.parameters = {'share': self.share}
 
     def gain(self, now):
-        """Return the factors."""
-        turn = np.clip(now.speeds / self.hover, self.SLOWEST, self.full)
-        return 1.0 + self.share * (self.full / turn - 1.0) / (self.full - 1.0)
+        """Return the factor, the same for all rotors."""
+        turn = float(np.clip(np.mean(now.speeds) / self.hover, self.SLOWEST, self.full))
+        return 1.0 + self.share * ((self.full / turn) ** 2 - 1.0) / (self.full ** 2 - 1.0)

@@ -136,7 +136,8 @@ def test_inertia_that_does_not_turn_with_the_body_is_no_factor_on_the_inertia(fo
 def test_a_centre_that_moves_is_no_constant_offset(form):
     part, true = made('com_offset', form), fresh()
     part.alter(true, PARAMS)
-    moment = of_part(part, PARAMS, PLACES, FLIGHT | {'rotation': LEANS.as_matrix()})[:, 3:5]
+    flight = FLIGHT | {'rotation': LEANS.as_matrix(), 'position': WAY}
+    moment = of_part(part, PARAMS, PLACES, flight)[:, 3:5]
     lift = PARAMS['k_eta'] * np.sum(FLIGHT['speeds'] ** 2, axis=1)
     x, y, _ = true['centre']
     moment = moment + lift[:, None] * [-y, x]
