@@ -74,9 +74,10 @@ def ends(track: Track, vehicle: Vehicle, z: np.ndarray, horizon: float,
     """
     flight = flight_of(track, horizon, EVERY)
     first = flight.first[flight.seen[flight.first + flight.count].all(axis=1)]
-    lost = np.concatenate([[0], np.cumsum(~flight.seen.any(axis=1))])
-    over = lost[first + flight.count] - lost[first]
-    first = first[over <= np.quantile(over, CLEAR, method='higher')]
+    if flight.lost is not None and len(first):
+        lost = np.concatenate([[0], np.cumsum(flight.lost)])
+        over = lost[first + flight.count] - lost[first]
+        first = first[over <= np.quantile(over, CLEAR, method='lower')]
     predicted = [predictor(flight, vehicle, z, flight.states[part], part,
                            flight.count)[:, -1].copy()
                  for part in np.split(first, range(AT_ONCE, len(first), AT_ONCE))]

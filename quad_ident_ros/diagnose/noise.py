@@ -39,6 +39,8 @@ def noise_of(selection: Selection, intake: Intake, rules: Rules) -> Noise:
                           zip(best.residuals, intake.flights, strict=True)], remembered, rules)
              for name, remembered in (('velocity', deviation[GROUPS['velocity']]),
                                       ('rate', np.zeros(3)))]
+    if any('position' in flight.summed for flight in intake.flights):
+        walks[0] = np.zeros(3)      # nothing shows how long its noise is remembered
     walk = np.concatenate(walks)
     return Noise(deviation, white, float(np.sqrt(steady + mean + level ** 2)), drift, walk)
 

@@ -38,8 +38,9 @@ class Rules:
         a gyro, as a share.
       low_pass: s by which the low pass of a gyro makes a rate late, and the attitude that a filter
         has from it: 5.9 ms for that of 41 Hz in an MPU-9250.
-      walk_lags: s, which separate the growth of the rate's errors from their noise: gyros are
-        filtered at 20 Hz and more, effects take half a second.
+      walk_lags: s, which separate the growth of errors of velocity and rate from their noise:
+        gyros are filtered at 20 Hz and more, effects take half a second; what the filter of a
+        velocity remembers for longer is bounded by its deviation.
     Prior:
       prior_odds: probability of each effect before looking. One to three of some seventeen are
         there in vehicles that are looked at; less, for the many that may be named by chance
@@ -99,10 +100,10 @@ class Rules:
     Advice:
       hidden, shown: standard errors from no effect below which an effect of usual size is not
         seen, and from which on it is, so is a parameter that shapes a form, and what differs from
-        none is no error of the form of others. Noise needs no
-        proof: that of moments between the samples counts from `hidden` on. Measured rotor speeds
-        rule a lag or a delay out by `shown`, and by as much what remains has to come and go with
-        an effect to be an error of its form.
+        none is no error of the form of others. Noise needs no proof: that of forces and moments
+        between the samples counts from `hidden` on. Measured rotor speeds rule a lag or a delay
+        out by `shown`, and by as much what remains has to come and go with an effect to be an
+        error of its form.
     Tolerance (a gap that matters, by group of outputs, at 0.5 s):
       visible: of the noise's gap: of what can be closed below it, shares mean nothing.
       noise_share: of the noise's gap: what remains below it is hard to see in a prediction, and

@@ -44,7 +44,8 @@ class Track:
     where the motion of the centre of mass is to follow from the predicted attitude; force (N, 3)
     m/s^2, body: what an accelerometer measured, or None without one; levelled: whether the scale
     of its commands is that by which thrust carries the weight; summed: groups of the states that
-    are integrals of the others.
+    are integrals of the others; lost (N,) whether commands from a sample to the next are those of
+    rows that were lost, or None where none was.
     """
 
     name: str
@@ -57,6 +58,7 @@ class Track:
     force: np.ndarray | None = field(default=None, kw_only=True)
     levelled: bool = field(default=False, kw_only=True)
     summed: tuple[str, ...] = field(default=(), kw_only=True)
+    lost: np.ndarray | None = field(default=None, kw_only=True)
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,12 +91,13 @@ def track_of(record: FlightRecord, vehicle: Vehicle, reference_voltage: float | 
                                 ('rate', slice(10, 13), attitudes)):
         seen[spikes(course.t, states[:, place], name, beside), GROUPS[name]] = False
     force = record.stack(*FORCE) if record.has(*FORCE) else None
-    course, states, seen, force = _bridged(course, states, seen, force, period)
+    course, states, seen, force, lost = _bridged(course, states, seen, force, period)
     skip = max(1, int(1.0 / (period * RATE) + 0.5))
     summed = tuple(record.info.get(SUMMED, ()))
     across = _across(force, period, skip) if force is not None and 'attitude' in summed else None
     if skip > 1:
         course, states, seen, force = _thinned(course, states, seen, force, skip)
+        lost = None if lost is None else lost[:len(states) * skip].reshape(-1, skip).any(axis=1)
         period *= skip
     if len(states) < 2:
         name = record.info.get('source') or record.info.get('name', 'flight')
@@ -103,7 +106,7 @@ def track_of(record: FlightRecord, vehicle: Vehicle, reference_voltage: float | 
     if across is not None:  # the force has given the velocity, and adds nothing to it
         course, force = replace(course, across=across[:len(states)]), None
     track = Track(record.info.get('name', 'flight'), course, states, seen, period, clock,
-                  force=force, levelled=FULL_SPEED in record.info, summed=summed)
+                  force=force, levelled=FULL_SPEED in record.info, summed=summed, lost=lost)
     return track if clock is None else moved(track, clock.late, clock.drift)
 
 
@@ -133,7 +136,7 @@ def flight_of(track: Track, segment: float = SEGMENT, every: float | None = None
                          f'{segment:g} s are too short; give a longer flight{faster}')
     return Flight(track.name, course, track.states, seen, period, track.clock, first, count,
                   guide=track.guide, force=track.force, levelled=track.levelled,
-                  summed=track.summed)
+                  summed=track.summed, lost=track.lost)
 
 
 def inertial(tracks: Iterable[Track]) -> bool:
@@ -172,13 +175,18 @@ def highest_voltage(records: Iterable[FlightRecord]) -> float | None:
 
 
 def _bridged(course: Course, states: np.ndarray, seen: np.ndarray, force: np.ndarray | None,
-             period: float) -> tuple[Course, np.ndarray, np.ndarray, np.ndarray | None]:
-    """Return course, states, seen and force with rows in place of those that were lost."""
+             period: float) -> tuple[Course, np.ndarray, np.ndarray, np.ndarray | None,
+                                     np.ndarray | None]:
+    """
+    Return course, states, seen and force with rows in place of those that were lost, and which.
+
+    None in place of the latter where none was lost.
+    """
     steps = np.diff(course.t)
     count = np.round(steps / period).astype(int)
     count = np.where((count > 1) & (steps <= BRIDGED), count, 1)
     if not (count > 1).any():
-        return course, states, seen, force
+        return course, states, seen, force, None
     before = np.repeat(np.arange(len(steps)), count)
     place = np.arange(len(before)) - np.repeat(np.cumsum(count) - count, count)
     share = np.append(place / count[before], 1.0)
@@ -195,7 +203,8 @@ def _bridged(course: Course, states: np.ndarray, seen: np.ndarray, force: np.nda
     there = (share == 0.0) | (share == 1.0)
     return (Course(between(course.t), between(course.commands), between(course.volt_drop),
                    reference_voltage=course.reference_voltage),
-            filled, seen[rows] & there[:, None], None if force is None else between(force))
+            filled, seen[rows] & there[:, None], None if force is None else between(force),
+            ~there)
 
 
 def _thinned(course: Course, states: np.ndarray, seen: np.ndarray, force: np.ndarray | None,

@@ -113,7 +113,7 @@ def standing(record: FlightRecord, vehicle: Vehicle) -> np.ndarray:
     flying = np.zeros(len(record), bool)
     for first, last in _runs(moving & (thrust > LIFT * usual)):
         flying[first:last + 1] = (last - first) * period > LASTS
-    struck = _struck(record, thrust / vehicle.mass)
+    struck = _struck(record, thrust / vehicle.mass, flying)
     for first, last in _runs(~moving & (thrust < IDLE * usual)):
         # In samples, too: a gap in the record is no time on the ground.
         if min(record.t[last] - record.t[first], (last - first) * period) < LEAST:
@@ -133,20 +133,27 @@ def standing(record: FlightRecord, vehicle: Vehicle) -> np.ndarray:
     return grounded
 
 
-def _struck(record: FlightRecord, thrust: np.ndarray) -> np.ndarray:
+def _struck(record: FlightRecord, thrust: np.ndarray, flying: np.ndarray) -> np.ndarray:
     """
-    Return where a blow has just stopped the vehicle, (N,) of bool: its velocity jumps for good.
+    Return where a blow has just stopped what flew, (N,) of bool: its velocity falls for good.
 
-    Args: thrust (N,) m/s^2, the commanded one over the mass.
+    A glitch of the velocity jumps twice, and one that is held for some rows by as much more.
+    Args: thrust (N,) m/s^2, the commanded one over the mass; flying (N,) bool.
     """
     found = np.zeros(len(record), bool)
-    if len(record) > 3:
-        velocity = record.stack('vx', 'vy', 'vz')
-        jump = np.linalg.norm(np.diff(velocity, axis=0), axis=1)[1:-1]
-        stays = np.linalg.norm(velocity[3:] - velocity[:-3], axis=1)
-        most = BLOW * float(np.quantile(thrust, STRONG)) * np.diff(record.t)[1:-1]
-        speed = np.linalg.norm(velocity, axis=1)
-        found[2:-1] = (np.minimum(jump, stays) > most) & (speed[2:-1] < speed[1:-2])
+    velocity = record.stack('vx', 'vy', 'vz')
+    jump = np.linalg.norm(np.diff(velocity, axis=0), axis=1)
+    if len(record) <= 3 or not jump.any():
+        return found
+    stays = np.linalg.norm(velocity[3:] - velocity[:-3], axis=1)
+    held = float(np.mean(jump > 0.0))
+    most = np.maximum(BLOW * float(np.quantile(thrust, STRONG)) * np.diff(record.t)[1:-1] / held,
+                      BEGUN * float(np.median(jump[jump > 0.0])))
+    jumps, speed = np.minimum(jump[1:-1], stays) > most, np.linalg.norm(velocity, axis=1)
+    falls = speed[2:-1] < speed[1:-2]
+    near, far = (uniform_filter1d(jumps.astype(float), size, mode='constant') * size for size in (
+        5, 2 * round(BESIDE / record.period()) + 5))
+    found[2:-1] = jumps & falls & flying[1:-2] & (far < near + 0.5)
     return found
 
 

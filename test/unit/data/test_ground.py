@@ -177,18 +177,54 @@ def test_what_is_held_in_a_hand_above_the_flight_is_no_flight(flight):
     assert len(airborne(whole, VEHICLE)) == len(flight)
 
 
-@pytest.mark.parametrize('noise', ['clean', 'mocap_imu'])
-def test_a_flight_at_the_height_of_the_stand_is_kept(noise):
-    """From a hand, a stand or a string, along a path that does not change its height."""
-    flown = fly_closed_loop(VEHICLE, {}, 'circle', duration=12.0, seed=3,
-                            noise=MOCAP_IMU if noise == 'mocap_imu' else CLEAN)
+def low_flight(noise=CLEAN, rate=100.0):
+    """Return a flight at the height of the stands before and after it, as from a hand."""
+    flown = fly_closed_loop(VEHICLE, {}, 'circle', duration=12.0, rate=rate, seed=3, noise=noise)
     assert np.ptp(flown.columns['pz']) < 0.1
     whole = grounded(flown, idle=0.0)
-    height = np.concatenate([np.full(200, flown.columns['pz'][0]), flown.columns['pz'],
-                             np.full(200, flown.columns['pz'][-1])])
-    part = airborne(replace(whole, columns={**whole.columns, 'pz': height}), VEHICLE)
-    assert part.t[0] == pytest.approx(STAND, abs=1.0)
-    assert part.t[-1] == pytest.approx(STAND + 12.0, abs=1.0)
+    pad = (len(whole) - len(flown)) // 2
+    height = np.concatenate([np.full(pad, flown.columns['pz'][0]), flown.columns['pz'],
+                             np.full(pad, flown.columns['pz'][-1])])
+    return replace(whole, columns={**whole.columns, 'pz': height})
+
+
+def kept_whole(record):
+    """Return whether a flight of low_flight is kept."""
+    part = airborne(record, VEHICLE)
+    return (part.t[0] == pytest.approx(STAND, abs=1.0)
+            and part.t[-1] == pytest.approx(STAND + 12.0, abs=1.0))
+
+
+@pytest.mark.parametrize('noise', [CLEAN, MOCAP_IMU], ids=['clean', 'mocap_imu'])
+def test_a_flight_at_the_height_of_the_stand_is_kept(noise):
+    """From a hand, a stand or a string, along a path that does not change its height."""
+    assert kept_whole(low_flight(noise))
+
+
+@pytest.mark.parametrize('rate', [250.0, 500.0])
+@pytest.mark.parametrize('kind', ['noise', 'held'])
+def test_no_noise_of_a_fast_log_is_a_blow(rate, kind):
+    whole = low_flight(rate=rate)
+    rows, random = np.arange(len(whole)), np.random.default_rng(7)
+    held = rows // round(rate / 30.0) * round(rate / 30.0)
+    changed_to = {name: whole.columns[name] + 0.05 * random.standard_normal(len(whole))
+                  if kind == 'noise' else whole.columns[name][held] for name in ('vx', 'vy')}
+    part = airborne(changed(whole, **changed_to), VEHICLE)
+    assert len(part) > 10.0 * rate
+
+
+@pytest.mark.parametrize('rows', [1, 2, 5, 10])
+def test_a_glitch_of_the_velocity_is_no_blow(rows):
+    whole = low_flight()
+    glitch = (whole.t > 6.0) & (whole.t < 6.0 + 0.01 * rows - 0.005)
+    assert kept_whole(changed(whole, vx=whole.columns['vx'] + 3.0 * glitch))
+
+
+def test_a_bump_in_a_stand_is_no_landing():
+    whole = low_flight()
+    bump = (whole.t > 0.5) & (whole.t < 0.6)
+    speed = np.where(bump, 12.0 * (whole.t - 0.5), whole.columns['vx'])
+    assert kept_whole(changed(whole, vx=speed))
 
 
 @pytest.mark.parametrize('strikes', [True, False])

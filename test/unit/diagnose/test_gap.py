@@ -49,6 +49,18 @@ def test_predictions_over_the_fewest_lost_rows_are_left_where_all_are_over_some(
     assert 0.25 * len(whole.t) * 0.9 <= len(part.t) < len(whole.t)
 
 
+def test_rows_that_are_lost_between_those_of_a_thinned_flight_count_too():
+    """Commands of a fast log are all kept, though its states are thinned."""
+    fast = fly_closed_loop(VEHICLE, {}, 'lissajous', duration=10.0, rate=250.0, seed=3,
+                           noise=MOCAP_IMU)
+    lost = np.zeros(len(fast), bool)
+    lost[501:2000:250] = True       # odd rows, of which thinning keeps none
+    whole, part = ends_of(fast), ends_of(without_rows(fast, lost))
+    assert len(part.t) < len(whole.t)
+    for when in fast.t[lost] - fast.t[0]:
+        assert not np.any((part.t <= when) & (when < part.t + HORIZON - 0.01))
+
+
 def test_forces_and_moments_between_the_samples_walk(record):
     """The closed forms of a random walk and of its integral (Maybeck 1979)."""
     walk = np.array([1e-2, 2e-2, 3e-2, 0.1, 0.2, 0.3])

@@ -19,7 +19,7 @@ from quad_ident_ros.diagnose.selection import posteriors, Selection
 from quad_ident_ros.diagnose.standard_errors import Joint
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import SENSORS
-from quad_ident_ros.greybox.flights import flight_of, track_of
+from quad_ident_ros.greybox.flights import flight_of, guided, track_of
 from quad_ident_ros.greybox.nuisances import CLOCK, Nuisance, NuisanceValues, RARE
 from quad_ident_ros.greybox.parameters import INDEX, nominal
 from quad_ident_ros.model.vehicle import load_vehicle
@@ -344,3 +344,24 @@ def test_the_thrust_of_each_flight_leaves_with_the_thrust_that_all_have():
                         if cause.effect == name) for name in ('thrust_scale_by_flight', CLOCK))
     [(chosen, _)] = other_ratios(key_of((thrust, mine, clock)), causes, nominal(vehicle), vehicle)
     assert set(chosen) == {mass, clock}
+
+
+@pytest.mark.slow
+def test_a_search_stands_at_no_set_twice(monkeypatch):
+    """Of a payload the mass alone, and it beside biases, are each the best around the other."""
+    vehicle, stood = load_vehicle('hummingbird'), []
+    flights = [flight_of(guided(track_of(fly_closed_loop(
+        vehicle, {'mass_offset': {'mass': 0.05}}, name, duration=30.0, seed=seed,
+        noise=SENSORS['mocap_imu']), vehicle)))
+        for seed, name in enumerate(('lissajous', 'steps', 'low_passes'))]
+    causes = candidates(flights, vehicle, RULES, None)
+    search = _Search(flights, vehicle, causes, RULES)
+    stand_at = search.stand_at
+
+    def told(chosen):
+        stood.append(chosen)
+        stand_at(chosen)
+
+    monkeypatch.setattr(search, 'stand_at', told)
+    search.look_among(tuple(cause for cause in causes if cause.usual), lambda share: None)
+    assert 2 <= len(stood) == len(set(stood))
