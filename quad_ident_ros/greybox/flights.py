@@ -97,7 +97,8 @@ def track_of(record: FlightRecord, vehicle: Vehicle, reference_voltage: float | 
     across = _across(force, period, skip) if force is not None and 'attitude' in summed else None
     if skip > 1:
         course, states, seen, force = _thinned(course, states, seen, force, skip)
-        lost = None if lost is None else lost[:len(states) * skip].reshape(-1, skip).any(axis=1)
+        if lost is not None:
+            lost = np.logical_or.reduce(lost[:len(states) * skip].reshape(-1, skip), axis=1)
         period *= skip
     if len(states) < 2:
         name = record.info.get('source') or record.info.get('name', 'flight')
