@@ -34,14 +34,14 @@ def noise_of(selection: Selection, intake: Intake, rules: Rules) -> Noise:
     mean = float(np.mean(white[attitude] ** 2)) * period / horizon_of(intake.flights, rules)
     levels = levels_itself(best, intake.flights, rules)
     level, drift = (rules.levelling, max(rules.drift, drift)) if levels else (0.0, drift)
-    # A velocity comes from a filter that remembers; beyond its low pass a gyro does not.
-    walks = [random_walk([(raw[..., GROUPS[name]], flight.period) for raw, flight in
-                          zip(best.residuals, intake.flights, strict=True)], remembered, rules)
-             for name, remembered in (('velocity', deviation[GROUPS['velocity']]),
-                                      ('rate', np.zeros(3)))]
-    if any('position' in flight.summed for flight in intake.flights):
-        walks[0] = np.zeros(3)      # nothing shows how long its noise is remembered
-    walk = np.concatenate(walks)
+    # Beyond its low pass a gyro forgets; the filter of a velocity does not, as positions show.
+    shown = not any('position' in flight.summed for flight in intake.flights)
+    remembered = {'velocity': deviation[GROUPS['velocity']] if shown else np.full(3, np.inf),
+                  'rate': np.zeros(3)}
+    walk = np.concatenate([
+        random_walk([(raw[..., GROUPS[name]], flight.period) for raw, flight in
+                     zip(best.residuals, intake.flights, strict=True)], deviations, rules)
+        for name, deviations in remembered.items()])
     return Noise(deviation, white, float(np.sqrt(steady + mean + level ** 2)), drift, walk)
 
 

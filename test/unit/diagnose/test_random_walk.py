@@ -29,6 +29,13 @@ def test_a_random_walk_grows_by_what_its_steps_have(growth, period):
     assert np.all((0.5 * growth < found) & (found < 1.25 * growth))
 
 
+def test_nothing_is_a_walk_beside_noise_that_may_be_remembered_for_any_time():
+    steps = np.sqrt(1e-2 * PERIOD) * np.random.default_rng(2).standard_normal(white().shape)
+    parts = [(white() + np.cumsum(steps, axis=1), PERIOD)]
+    assert np.all(random_walk(parts, FORGOTTEN, RULES) > 0.0)
+    assert np.all(random_walk(parts, np.full(3, np.inf), RULES) == 0.0)
+
+
 def test_noise_of_the_sensor_is_no_walk():
     assert np.all(random_walk([(white(), PERIOD)], FORGOTTEN, RULES) == 0.0)
 
