@@ -61,7 +61,7 @@ def candidates(flights: list, vehicle: Vehicle, rules: Rules,
         if effects is not None and name not in effects:
             continue
         forms = [form for form in _known_first(effect, vehicle)
-                 if (voltage or not form.needs_voltage)
+                 if not (form.without_voltage if voltage else form.needs_voltage)
                  and not (inertial(flights) and form.needs_reference)
                  and not (_without_height(flights) and form.needs_height)]
         for form in forms:

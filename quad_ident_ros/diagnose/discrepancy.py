@@ -5,10 +5,11 @@ What the model cannot be right about: the error of form, marginalised out of the
 
 After Kennedy and O'Hagan (J. R. Stat. Soc. B 63, 2001) a residual is noise and a discrepancy of
 the model. Over each block of about a second the discrepancy has two parts, both normal about zero:
-every effect does what its formula says times one plus a relative error, apart for translation and
-rotation; and a force and a moment act that nothing explains. The relative error is given, the size
-of force and moment is estimated with the effects. Within a block its errors are the same, from
-block to block they are independent.
+every term of an effect's formula, one for each parameter, does what it says times one plus a
+relative error, apart for translation and rotation; and a force and a moment act that nothing
+explains. The relative error is given, the size of force and moment is estimated with the effects.
+Within a block its errors are the same, from block to block they are independent. Errors of terms,
+and not of effects, are the same whichever effects the terms are counted to.
 """
 
 from dataclasses import dataclass
@@ -41,7 +42,7 @@ class Blocks:
     Residuals r and discrepancy directions U of blocks of rollouts, as their products.
 
     gram (K, D, D) of U, cross (K, D) of U with r, power: the sum of r squared. The first AXES
-    directions are forces, the next AXES moments, the others what effects do.
+    directions are forces, the next AXES moments, the others what terms of formulas do.
     """
 
     gram: np.ndarray
@@ -61,7 +62,7 @@ def directions(wrench: np.ndarray, contributions: np.ndarray) -> np.ndarray:
     Return the directions, (2, N, D), of the discrepancy as sums of slopes in N columns.
 
     Of translation and of rotation. Args: wrench (N, 6): the columns of a force and a moment;
-    contributions (N, E): what each effect has of each column.
+    contributions (N, E): what each term has of each column.
     """
     none = np.zeros(contributions.shape)
     return np.stack([np.hstack([wrench, contributions, none]),
@@ -73,7 +74,7 @@ def scales(force: float, moment: float, form_error: float | np.ndarray, count: i
     """
     Return the prior standard deviation (D,) along each of `count` directions.
 
-    form_error: the relative error of all formulas, or (E,) of each.
+    form_error: the relative error of all terms, or (E,) of each.
     """
     each = np.broadcast_to(form_error, count // 2 - AXES)
     return np.concatenate([np.full(AXES, force), np.full(AXES, moment), each, each])

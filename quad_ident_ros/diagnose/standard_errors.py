@@ -75,9 +75,9 @@ def joint_of(fitted: Fitted, flights: Sequence[Flight], frame: Frame, vehicle: V
     form_error = max(FORM_ERRORS, key=likelihood)
     # Of one effect, beside the others as exact as all are likeliest to be.
     form_errors = {effect: np.array([
-        likelihood(np.where(np.arange(len(distances)) == place, size, form_error))
+        likelihood(np.where([one == effect for one, _ in distances], size, form_error))
         for size in OF_EACH])
-        for place, (effect, _) in enumerate(distances) if effect is not None}
+        for effect in dict.fromkeys(one for one, _ in distances) if effect is not None}
     constants = uncertain_constants(vehicle, fit.columns)
     columns = [*fit.columns, *(INDEX[name] for name in constants)]
     layout = Layout(columns, fit.nuisances.columns, len(fit.nuisances.values))

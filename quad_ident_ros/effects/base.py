@@ -81,9 +81,9 @@ class Form:
     or 'block' (both) or 'heading', where they are those of a sensor. acts_on: what it changes
     first, translation (forces), rotation (moments and what is measured of the rate) or both;
     on_rotors: it acts on rotors, so that a vehicle flown from U1..U4 needs some; needs_voltage: it
-    acts only where the voltage is recorded; needs_reference: it shows only against a position, a
-    velocity or an attitude, not in accelerometer and gyro alone; needs_height: it shows only where
-    the height was measured.
+    acts only where the voltage is recorded; without_voltage: it says something only where none is;
+    needs_reference: it shows only against a position, a velocity or an attitude, not in
+    accelerometer and gyro alone; needs_height: it shows only where the height was measured.
     """
 
     name: str
@@ -100,6 +100,7 @@ class Form:
     sensor: Literal['attitude', 'rate', 'block', 'heading'] | None = None
     on_rotors: bool = True
     needs_voltage: bool = False
+    without_voltage: bool = False
     needs_reference: bool = False
     needs_height: bool = False
 

@@ -7,6 +7,8 @@ from quad_ident_ros.effects import (
     battery_sag_discharge,
     battery_sag_load,
     battery_sag_power,
+    battery_sag_spent,
+    battery_sag_spent_load,
     battery_sag_time,
 )
 from quad_ident_ros.effects.base import Effect, Form, Parameter, Table
@@ -31,6 +33,7 @@ FORM = Form(
 EFFECT = Effect(
     name='battery_sag', title='voltage sag of the battery',
     forms=(FORM, battery_sag_time.FORM, battery_sag_power.FORM, battery_sag_load.FORM,
+           battery_sag_spent.FORM, battery_sag_spent_load.FORM,
            battery_sag_discharge.FORM),
     excitation='a flight long enough for the voltage to fall',
     confused_with=('thrust_scale', 'mass_offset'))

@@ -52,6 +52,8 @@ WAYS: dict[tuple[str, str], tuple[Way, ...]] = {
     ('battery_sag', 'time'): (_MEAN,),
     ('battery_sag', 'voltage_power'): (_MEAN,),
     ('battery_sag', 'time_and_load'): (_MEAN,),
+    ('battery_sag', 'spent'): (_MEAN,),
+    ('battery_sag', 'spent_and_load'): (_MEAN,),
     ('battery_sag', 'discharge'): (_MEAN,),
     ('thrust_scale', 'factor'): (Way(('thrust',), 'a factor on the thrust coefficient, which is '
                                      'the same motion'),),

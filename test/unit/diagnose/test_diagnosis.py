@@ -249,6 +249,24 @@ def test_a_battery_that_empties_is_found_in_a_single_flight():
     check(diagnose([replace(record, columns=columns)], VEHICLE).as_data(), truth)
 
 
+def without_voltage(record):
+    columns = {name: values for name, values in record.columns.items() if name != 'vbat'}
+    return replace(record, columns=columns)
+
+
+def test_a_battery_that_was_not_full_is_one_cause_where_nobody_saw_its_voltage():
+    """A thrust that is less and a battery that empties move a vehicle just so."""
+    flights = flown({'thrust_scale': {'factor': 0.95}, 'battery_sag': {'per_second': 0.003}})
+    seen, unseen = (diagnose(some, VEHICLE) for some in (
+        flights, [without_voltage(record) for record in flights]))
+    assert set(seen.verdict) == {'thrust_scale', 'battery_sag'}
+    assert unseen.verdict == ('battery_sag',)
+    row = unseen.ranking[0]
+    assert row.form == 'spent'
+    for name, value in (('spent', 0.05), ('fall', 0.95 * 0.003)):
+        assert abs(row.parameters[name].value - value) < 4.0 * row.parameters[name].std
+
+
 def test_what_is_taken_out_as_improbable_is_in_the_standard_errors_of_the_others():
     flights = flown({'rotor_drag': {'coefficient': 0.15},
                      'body_drag': {'horizontal': 0.03, 'vertical': 0.03}})

@@ -2,10 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """The error of form, marginalised out: against the dense normal distribution."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from scipy.stats import multivariate_normal
 
+from quad_ident_ros.diagnose.candidates import Candidate
 from quad_ident_ros.diagnose.discrepancy import (
     blocks_of,
     directions,
@@ -16,6 +19,11 @@ from quad_ident_ros.diagnose.discrepancy import (
     scales,
     summed,
 )
+from quad_ident_ros.diagnose.fitted import distances_of
+from quad_ident_ros.diagnose.frame import directions_of
+from quad_ident_ros.greybox.linear import WRENCH
+from quad_ident_ros.greybox.parameters import INDEX, nominal
+from quad_ident_ros.model.vehicle import load_vehicle
 
 ROLLOUTS, SAMPLES, EFFECTS = 5, 2, 2
 LENGTH = 12 * SAMPLES
@@ -129,3 +137,20 @@ def test_the_sizes_are_the_likeliest_on_the_grids():
              for force in grids[0]]
     assert value == np.max(table)
     assert fitted_sizes(blocks, 0.2, grids, start=(5, 5))[1] == sizes
+
+
+def test_it_does_not_matter_to_which_effect_a_term_is_counted():
+    """Nothing is won by calling the constant part of a sag a thrust that is less."""
+    vehicle = load_vehicle('hummingbird')
+    constant, fall = (INDEX[f'battery_sag.{name}'] for name in ('spent', 'fall'))
+    z = nominal(vehicle)
+    z[[constant, fall]] += 0.05, 0.002
+    fit = SimpleNamespace(z=z, vectors=[z, z])
+    one = (Candidate('battery_sag', 'battery_sag spent', (constant, fall)),)
+    two = (Candidate('thrust_scale', 'thrust_scale factor', (constant,)),
+           Candidate('battery_sag', 'battery_sag time', (fall,)))
+    columns = sorted([constant, fall, *WRENCH])
+    for flight in range(2):
+        np.testing.assert_array_equal(*(
+            directions_of(distances_of(chosen, fit, vehicle), flight, columns)
+            for chosen in (one, two)))

@@ -35,6 +35,9 @@ OTHERS = {
     ('battery_sag', 'time'): {'per_second': 0.01},
     ('battery_sag', 'voltage_power'): {'exponent': 2.0, 'load': 0.1},
     ('battery_sag', 'time_and_load'): {'drain': 0.01, 'sink': 0.1},
+    ('battery_sag', 'spent'): {'spent': 0.05, 'fall': 0.01},
+    ('battery_sag', 'spent_and_load'): {'lost_before': 0.05, 'lost_per_second': 0.01,
+                                        'lost_by_load': 0.1},
     ('battery_sag', 'discharge'): {'zone': 0.05, 'slope': 0.01, 'bend': 1e-3, 'load_sink': 0.1},
     ('motor_lag', 'rise_fall'): {'rise': 0.03, 'fall': 0.06},
     ('motor_lag', 'slew'): {'slew': 2e-4},
@@ -313,6 +316,23 @@ def test_a_battery_sinks_under_load_and_not_at_hover(load, form):
     assert climb(effects) == pytest.approx(0.0, abs=1e-9)
     found = climb(effects, 1.1)
     assert found == pytest.approx(GRAVITY * (1.21 * (1 - 0.1 * (1.1 ** 3 - 1)) - 1), rel=1e-6)
+
+
+@pytest.mark.parametrize('speed', [0.8, 1.0, 1.2])
+def test_behind_a_resistance_thrust_sinks_by_all_that_is_drawn(speed):
+    lost = {'lost_before': 0.1, 'lost_by_load': 0.1}
+    found = climb({'battery_sag': lost}, speed)
+    assert found == pytest.approx(GRAVITY * (speed ** 2 * (1 - 0.1 * speed ** 3) - 1), rel=1e-6)
+
+
+def test_a_battery_that_was_not_full_is_a_thrust_that_is_less_and_falls():
+    course = steps(VEHICLE)
+    one, two, three = (roll(VEHICLE, each, course, START) for each in (
+        {'battery_sag': {'spent': 0.1, 'fall': 0.009}},
+        {'battery_sag': {'lost_before': 0.1, 'lost_per_second': 0.009}},
+        {'thrust_scale': {'factor': 0.9}, 'battery_sag': {'per_second': 0.01}}))
+    assert np.abs(one - two).max() < 1e-10
+    assert np.abs(one - three).max() < 1e-10
 
 
 def test_thrust_falls_by_the_second_under_load_too():
