@@ -454,6 +454,41 @@ class Bent(Influence):
         return force, np.cross(place, force)
 
 
+class Turret(Influence):
+    """
+    A turret with a camera that looks elsewhere now and then: its reaction turns the body back.
+
+    It pans about the body's vertical and tilts about where it looks across, and each turn starts
+    and stops with the least jerk (T. Flash, N. Hogan, The coordination of arm movements, Journal
+    of Neuroscience 5(7), 1985), so that it leaves no momentum. Its centre is where its axes meet.
+    """
+
+    LASTS, EVERY, COUNT = 0.6, (0.8, 2.0), 60       # s; s, from turn to turn; far more than needed
+    PANS, TILTS = 1.5, 1.0                          # rad, from ahead, and downwards, at most
+
+    def __init__(self, size, weight, radius, rng):
+        """Take its inertia, kg m^2."""
+        self.inertia = 0.0004 * size * weight * radius
+
+    def begin(self, rng):
+        """Draw when it turns, and whereto."""
+        self.times = np.cumsum(rng.uniform(*self.EVERY, self.COUNT))
+        pans = rng.uniform(-self.PANS, self.PANS, self.COUNT + 1)
+        tilts = rng.uniform(0.0, self.TILTS, self.COUNT + 1)
+        middle = 0.5 * (pans[1:] + pans[:-1])
+        across, tilted = np.column_stack([-np.sin(middle), np.cos(middle)]), np.diff(tilts)
+        self.turns = np.column_stack([tilted[:, None] * across, np.diff(pans)])
+
+    def wrench(self, now):
+        """Return the moment."""
+        last = int(np.searchsorted(self.times, now.time)) - 1
+        part = (now.time - self.times[max(last, 0)]) / self.LASTS
+        if last < 0 or part >= 1.0:
+            return None
+        slope = 60.0 * part * (1.0 - part) * (1.0 - 2.0 * part) / self.LASTS ** 2
+        return np.zeros(3), -self.inertia * slope * self.turns[last]
+
+
 # Each with what of the vehicle its size is measured by.
 KINDS = {'periodic_force': (Periodic, 'weight'), 'tether': (Tether, 'weight'),
          'updraft': (Updraft, 'weight'), 'thrust_exponent': (Exponent, 'hover'),
@@ -465,4 +500,5 @@ KINDS = {'periodic_force': (Periodic, 'weight'), 'tether': (Tether, 'weight'),
          'recoil': (Recoil, 'weight', 'radius'), 'keel': (Keel, 'weight', 'radius'),
          'twisted': (Twisted, 'weight', 'radius', 'hover'),
          'flywheel': (Flywheel, 'weight', 'radius'), 'carousel': (Carousel, 'mass'),
-         'sandbag': (Sandbag, 'weight'), 'bent': (Bent, 'rotors', 'weight', 'hover')}
+         'sandbag': (Sandbag, 'weight'), 'bent': (Bent, 'rotors', 'weight', 'hover'),
+         'turret': (Turret, 'weight', 'radius')}
