@@ -13,6 +13,7 @@ from quad_ident_ros.diagnose.judgement import Judgement
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.diagnose.selection import Selection
 from quad_ident_ros.diagnose.verdict import Verdict
+from quad_ident_ros.effects.base import Effect, Form
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.greybox.flights import Flight, inertial, RATE
 from quad_ident_ros.greybox.parameters import NAMES
@@ -96,12 +97,17 @@ def one_finding(verdict: Verdict, flights: Sequence[Flight]) -> tuple[dict, ...]
     rows, named = [], [name for name in verdict.names if name in EFFECTS]
     # The moments separate thrust from mass, but not where the inertia is off, too.
     loose = any(EFFECTS[name].scale_group and EFFECTS[name].ratio is None for name in named)
-    for effect in (EFFECTS[name] for name in named if EFFECTS[name].same_motion):
+    forms = {row.effect: row.form for row in verdict.ranking}
+    for effect in (EFFECTS[name] for name in named):
         ratio = [name for name, other in EFFECTS.items()
                  if effect.ratio is not None and other.ratio == effect.ratio]
-        rows.append({'effect': effect.name, 'may_be': [list(pair) for pair in effect.same_motion],
-                     'effects': sorted(ratio) if loose and ratio else [effect.name],
-                     'tells': effect.told_by})
+        known: list[tuple[Effect | Form, list[str]]] = [
+            (effect, sorted(ratio) if loose and ratio else [effect.name]),
+            *((form, [effect.name]) for form in effect.forms
+              if form.name == forms.get(effect.name))]
+        rows += [{'effect': effect.name, 'may_be': [list(pair) for pair in one.same_motion],
+                  'effects': effects, 'tells': one.told_by}
+                 for one, effects in known if one.same_motion]
     late = sorted(name for name, effect in EFFECTS.items() if effect.actuator)
     slow = 1.0 / max(flight.period for flight in flights) < RATE / 2
     faster = f', or a log of {RATE:.0f} Hz and more' if slow else ''

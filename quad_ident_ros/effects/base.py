@@ -83,7 +83,8 @@ class Form:
     on_rotors: it acts on rotors, so that a vehicle flown from U1..U4 needs some; needs_voltage: it
     acts only where the voltage is recorded; without_voltage: it says something only where none is;
     needs_reference: it shows only against a position, a velocity or an attitude, not in
-    accelerometer and gyro alone; needs_height: it shows only where the height was measured.
+    accelerometer and gyro alone; needs_height: it shows only where the height was measured;
+    same_motion, told_by: as of Effect, of this form alone.
     """
 
     name: str
@@ -103,6 +104,8 @@ class Form:
     without_voltage: bool = False
     needs_reference: bool = False
     needs_height: bool = False
+    same_motion: tuple[tuple[str, str], ...] = ()
+    told_by: str = ''
 
 
 @dataclass(frozen=True)

@@ -52,6 +52,11 @@ def as_if(record, told):
     return replace(record, columns=record.columns | columns)
 
 
+def without_voltage(record):
+    columns = {name: values for name, values in record.columns.items() if name != 'vbat'}
+    return replace(record, columns=columns)
+
+
 def with_play(commands, width=0.03 * HOVER):
     """Return commands that the rotors followed through a play of some width."""
     told = [commands[0]]
@@ -245,13 +250,7 @@ def test_a_flight_that_is_given_twice_is_refused():
 def test_a_battery_that_empties_is_found_in_a_single_flight():
     truth = {'battery_sag': {'per_second': 0.003}}
     record = fly_closed_loop(VEHICLE, truth, 'lissajous', duration=40.0, seed=3, noise=WHITE)
-    columns = {name: values for name, values in record.columns.items() if name != 'vbat'}
-    check(diagnose([replace(record, columns=columns)], VEHICLE).as_data(), truth)
-
-
-def without_voltage(record):
-    columns = {name: values for name, values in record.columns.items() if name != 'vbat'}
-    return replace(record, columns=columns)
+    check(diagnose([without_voltage(record)], VEHICLE).as_data(), truth)
 
 
 def test_a_battery_that_was_not_full_is_one_cause_where_nobody_saw_its_voltage():
@@ -263,6 +262,8 @@ def test_a_battery_that_was_not_full_is_one_cause_where_nobody_saw_its_voltage()
     assert unseen.verdict == ('battery_sag',)
     row = unseen.ranking[0]
     assert row.form == 'spent'
+    # How much of it the battery had lost before is not said without saying what would tell.
+    assert 'a recorded voltage' in unseen.one_finding[0]['tells']
     for name, value in (('spent', 0.05), ('fall', 0.95 * 0.003)):
         assert abs(row.parameters[name].value - value) < 4.0 * row.parameters[name].std
 
