@@ -29,6 +29,7 @@ class Candidate:
     form: the name of the form; rotor: the number of the one that it is of, 0 where it is of all;
     usual: whether the form is that of the vehicle file, or else the one that most know; plain:
     whether it has no more parameters than that; share: its part of the effect's prior probability;
+    vector: whether its parameters are components of one vector;
     nuisance: the greybox.nuisances.Nuisance that it is instead of an effect, or None.
     """
 
@@ -40,7 +41,15 @@ class Candidate:
     usual: bool = True
     plain: bool = True
     share: float = 1.0
+    vector: bool = False
     nuisance: Nuisance | None = None
+
+    @property
+    def terms(self) -> tuple[tuple[int, ...], ...]:
+        """Return the columns of each term of the formula: a vector is one, a nuisance, too."""
+        if self.vector or self.nuisance:
+            return (self.columns,)
+        return tuple((column,) for column in self.columns)
 
     def __hash__(self) -> int:      # of sets of them there are thousands: that of all is slow
         return hash((self.label, self.form))
@@ -72,7 +81,7 @@ def candidates(flights: list, vehicle: Vehicle, rules: Rules,
                 continue
             one = Candidate(name, f'{name} {form.name}', columns, form.name, 0, form is forms[0],
                             len(form.parameters) <= len(forms[0].parameters),
-                            _share(name, form, forms, rules))
+                            _share(name, form, forms, rules), form.vector)
             found += _of_each_rotor(one) if effect.per_rotor else [one]
     return tuple(found)
 

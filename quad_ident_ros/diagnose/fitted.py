@@ -76,15 +76,15 @@ def refitted(flights: Sequence[Flight], vehicle: Vehicle, z: np.ndarray, chosen:
 
 def distances_of(chosen: tuple, fit: Estimate, vehicle: Vehicle) -> dict:
     """
-    Return {(effect, column): distance (F,) of a parameter from none in each flight}.
+    Return {(effect, columns): distance (F, K) of a term's parameters from none in each flight}.
 
     Of each effect and, as None, nuisance of a set: what a nuisance does is a formula, too.
     """
     vectors = np.stack(fit.vectors)
     shared = np.broadcast_to(fit.z - nominal(vehicle), vectors.shape)
-    return {(None if cause.nuisance else cause.effect, column):
-            (vectors - fit.z if cause.nuisance else shared)[:, column]
-            for cause in chosen for column in cause.columns}
+    return {(None if cause.nuisance else cause.effect, columns):
+            (vectors - fit.z if cause.nuisance else shared)[:, list(columns)]
+            for cause in chosen for columns in cause.terms}
 
 
 def prior_deviations(vehicle: Vehicle, rules: Rules) -> np.ndarray:

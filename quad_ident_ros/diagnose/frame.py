@@ -134,19 +134,19 @@ def directions_of(distances: dict, flight: int, columns: list[int]) -> np.ndarra
     """
     Return the directions (2, N, D) of the discrepancy of a flight in N columns (places in z).
 
-    Args: distances: {(effect, column): distance (F,) of a parameter from none in each flight} of
-    each effect and, as None, nuisance.
+    Args: distances: {(effect, columns): distance (F, K) of a term's parameters from none in each
+    flight} of each effect and, as None, nuisance.
     """
     shares = np.zeros((len(columns), len(distances)))
-    for k, ((_, column), away) in enumerate(distances.items()):
-        shares[columns.index(column), k] = away[flight]
+    for k, ((_, term), away) in enumerate(distances.items()):
+        shares[[columns.index(column) for column in term], k] = away[flight]
     wrench = np.equal.outer(columns, WRENCH).astype(float)
     return directions(wrench, shares)
 
 
 def blocks_at(frame: Frame, fit: Estimate, distances: dict) -> Blocks:
     """Return the Blocks of the residuals of an Estimate with its effects' distances."""
-    used = sorted({*WRENCH, *(column for _, column in distances)})
+    used = sorted({*WRENCH, *(column for _, term in distances for column in term)})
     places = frame.places(used)
     return blocks_of([(frame.with_residual(errors, k, places),
                        directions_of(distances, k, used))

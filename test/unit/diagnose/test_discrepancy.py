@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.stats import multivariate_normal
 
-from quad_ident_ros.diagnose.candidates import Candidate
+from quad_ident_ros.diagnose.candidates import Candidate, candidates
 from quad_ident_ros.diagnose.discrepancy import (
     blocks_of,
     directions,
@@ -21,6 +21,7 @@ from quad_ident_ros.diagnose.discrepancy import (
 )
 from quad_ident_ros.diagnose.fitted import distances_of
 from quad_ident_ros.diagnose.frame import directions_of
+from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.greybox.linear import WRENCH
 from quad_ident_ros.greybox.parameters import INDEX, nominal
 from quad_ident_ros.model.vehicle import load_vehicle
@@ -154,3 +155,19 @@ def test_it_does_not_matter_to_which_effect_a_term_is_counted():
         np.testing.assert_array_equal(*(
             directions_of(distances_of(chosen, fit, vehicle), flight, columns)
             for chosen in (one, two)))
+
+
+def test_a_wind_is_stronger_or_weaker_along_its_own_direction():
+    """Whatever the axes of the world are: nothing is won by turning them."""
+    vehicle = load_vehicle('hummingbird')
+    [wind] = candidates([], vehicle, Rules(), ['wind'])
+    columns = sorted([*wind.columns, *WRENCH])
+    places = [columns.index(column) for column in wind.columns]
+    for velocity in ((2.0, -1.0, 0.0), (0.0, 3.0, 0.0)):
+        z = nominal(vehicle)
+        z[list(wind.columns)] += velocity
+        fit = SimpleNamespace(z=z, vectors=[z])
+        along = directions_of(distances_of((wind,), fit, vehicle), 0, columns)
+        along = along[:, places] * scales(0.0, 0.0, 0.2, along.shape[2])
+        for part in along:
+            np.testing.assert_allclose(part @ part.T, 0.04 * np.outer(velocity, velocity))
