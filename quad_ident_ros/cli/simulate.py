@@ -61,10 +61,9 @@ def run(options):
                   + (f' at t = {flight.end_time:.6g} s' if flight.status != 'complete' else ''))
             if info['infeasible']:
                 print(f'  infeasible: {info["infeasible"]}')
-            last = {name: flight.record.columns[name][-1]
-                    for name in ('phi', 'theta', 'psi', 'pz')}
-            print('  last sample: ' + ', '.join(f'{name} = {value:.9g}'
-                                                for name, value in last.items()))
+            print('  last sample: ' + ', '.join(
+                f'{name} = {flight.record.columns[name][-1]:.9g} {unit}' for name, unit in
+                (('phi', 'rad'), ('theta', 'rad'), ('psi', 'rad'), ('pz', 'm'))))
     if options.json:
         write_json(options.json, [{key: None if isinstance(value, float)
                                    and not math.isfinite(value) else value
