@@ -46,8 +46,8 @@ class Candidate:
 
     @property
     def terms(self) -> tuple[tuple[int, ...], ...]:
-        """Return the columns of each term of the formula: a vector is one, a nuisance, too."""
-        if self.vector or self.nuisance:
+        """Return the columns of each term of the formula: a vector is one."""
+        if self.vector:
             return (self.columns,)
         return tuple((column,) for column in self.columns)
 
@@ -140,4 +140,6 @@ def nuisance_candidates(vehicle: Vehicle, tracks: list, differ: Collection[str] 
     """
     kinds = (kind.differing if kind.name in differ else kind
              for kind in nuisances(vehicle, tracks, gusty))
-    return tuple(Candidate(kind.name, kind.name, kind.columns, nuisance=kind) for kind in kinds)
+    return tuple(Candidate(kind.name, kind.name, kind.columns, nuisance=kind,
+                           vector=bool(kind.of_effect) and EFFECTS[kind.of_effect].forms[0].vector)
+                 for kind in kinds)

@@ -16,7 +16,7 @@ FORM = Form(
                      for name, axis in zip(('roll', 'pitch', 'yaw'), 'xyz', strict=True)),
     source='measured attitude = attitude * tilt',
     on_rotors=False,
-    sensor='attitude', needs_reference=True, vector=True)
+    sensor='attitude', needs_reference=True)
 EFFECT = Effect(
     name='attitude_misalignment', title='misaligned attitude or gyro',
     forms=(FORM, attitude_misalignment_block.FORM, attitude_misalignment_gyro.FORM,

@@ -12,4 +12,4 @@ FORM = Form(
                      for name, axis in zip(('roll', 'pitch', 'yaw'), 'xyz', strict=True)),
     source='measured attitude = attitude * tilt, measured rate = inverse of tilt * rate: an '
            'autopilot that sits askew',
-    sensor='block', on_rotors=False, needs_reference=True, vector=True)
+    sensor='block', on_rotors=False, needs_reference=True)

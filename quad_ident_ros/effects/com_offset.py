@@ -22,7 +22,7 @@ FORM = Form(
                                f'{axis}, from the declared body origin') for axis in 'xyz'),
     source='every lever arm counts from the centre of mass; the record is of the body origin',
     acts_on='rotation',
-    body=body, vector=True)
+    body=body)
 EFFECT = Effect(
     name='com_offset', title='offset of the centre of mass', forms=(FORM,),
     excitation='any flight; horizontal acceleration for the part along z',

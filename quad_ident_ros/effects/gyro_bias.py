@@ -10,7 +10,7 @@ FORM = Form(
                      for axis in 'xyz'),
     source='measured rate = rate + bias',
     acts_on='rotation', on_rotors=False,
-    sensor='rate', needs_reference=True, vector=True)
+    sensor='rate', needs_reference=True)
 EFFECT = Effect(
     name='gyro_bias', title='bias of the gyroscope', forms=(FORM,),
     excitation='any flight with a measured attitude')
