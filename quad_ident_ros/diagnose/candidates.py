@@ -29,7 +29,7 @@ class Candidate:
     form: the name of the form; rotor: the number of the one that it is of, 0 where it is of all;
     usual: whether the form is that of the vehicle file, or else the one that most know; plain:
     whether it has no more parameters than that; share: its part of the effect's prior probability;
-    vector: whether its parameters are components of one vector;
+    vector: as of Form;
     nuisance: the greybox.nuisances.Nuisance that it is instead of an effect, or None.
     """
 
@@ -46,7 +46,7 @@ class Candidate:
 
     @property
     def terms(self) -> tuple[tuple[int, ...], ...]:
-        """Return the columns of each term of the formula: a vector is one."""
+        """Return the columns of each term of the formula: those of a vector are one term."""
         if self.vector:
             return (self.columns,)
         return tuple((column,) for column in self.columns)

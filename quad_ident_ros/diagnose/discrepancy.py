@@ -5,11 +5,12 @@ What the model cannot be right about: the error of form, marginalised out of the
 
 After Kennedy and O'Hagan (J. R. Stat. Soc. B 63, 2001) a residual is noise and a discrepancy of
 the model. Over each block of about a second the discrepancy has two parts, both normal about zero:
-every term of an effect's formula, one for each parameter or wind, does what it says times one
-plus a relative error, apart for translation and rotation; and a force and a moment act that
-nothing explains. The relative error is given, the size of force and moment is estimated with the
-effects. Within a block its errors are the same, from block to block they are independent. Errors
-of terms, and not of effects, are the same whichever effects the terms are counted to.
+every term of an effect's formula does what it says times one plus a relative error, apart for
+translation and rotation; and a force and a moment act that nothing explains. Each parameter has
+a term, the components of a wind have one together. The relative error is given, the size of
+force and moment is estimated with the effects. Within a block its errors are the same, from block
+to block they are independent. Errors of terms, and not of effects, are the same whichever effects
+the terms are counted to.
 """
 
 from dataclasses import dataclass

@@ -82,7 +82,7 @@ class Form:
     first, translation (forces), rotation (moments and what is measured of the rate) or both;
     on_rotors: it acts on rotors, so that a vehicle flown from U1..U4 needs some; needs_voltage: it
     acts only where the voltage is recorded; without_voltage: it says something only where none is;
-    vector: its parameters are components of one vector, along the axes of the world;
+    vector: its parameters are the components of one vector in the world, one term of the law;
     needs_reference: it shows only against a position, a velocity or an attitude, not in
     accelerometer and gyro alone; needs_height: it shows only where the height was measured;
     same_motion, told_by: as of Effect, of this form alone.
