@@ -29,8 +29,8 @@ class Candidate:
     form: the name of the form; rotor: the number of the one that it is of, 0 where it is of all;
     usual: whether the form is that of the vehicle file, or else the one that most know; plain:
     whether it has no more parameters than that; share: its part of the effect's prior probability;
-    vector: as of Form;
-    nuisance: the greybox.nuisances.Nuisance that it is instead of an effect, or None.
+    apart: those of its columns that do what another effect does; nuisance: the
+    greybox.nuisances.Nuisance that it is instead of an effect, or None.
     """
 
     effect: str
@@ -41,15 +41,14 @@ class Candidate:
     usual: bool = True
     plain: bool = True
     share: float = 1.0
-    vector: bool = False
+    apart: tuple[int, ...] = ()
     nuisance: Nuisance | None = None
 
     @property
     def terms(self) -> tuple[tuple[int, ...], ...]:
-        """Return the columns of each term of the formula: those of a vector are one term."""
-        if self.vector:
-            return (self.columns,)
-        return tuple((column,) for column in self.columns)
+        """Return the columns of each term of the formula: the effect's, and those of others."""
+        whole = tuple(column for column in self.columns if column not in self.apart)
+        return (whole, *((column,) for column in self.apart))
 
     def __hash__(self) -> int:      # of sets of them there are thousands: that of all is slow
         return hash((self.label, self.form))
@@ -81,7 +80,9 @@ def candidates(flights: list, vehicle: Vehicle, rules: Rules,
                 continue
             one = Candidate(name, f'{name} {form.name}', columns, form.name, 0, form is forms[0],
                             len(form.parameters) <= len(forms[0].parameters),
-                            _share(name, form, forms, rules), form.vector)
+                            _share(name, form, forms, rules),
+                            tuple(column for parameter in form.apart
+                                  if (column := INDEX[f'{name}.{parameter}']) in columns))
             found += _of_each_rotor(one) if effect.per_rotor else [one]
     return tuple(found)
 
@@ -140,6 +141,4 @@ def nuisance_candidates(vehicle: Vehicle, tracks: list, differ: Collection[str] 
     """
     kinds = (kind.differing if kind.name in differ else kind
              for kind in nuisances(vehicle, tracks, gusty))
-    return tuple(Candidate(kind.name, kind.name, kind.columns, nuisance=kind,
-                           vector=bool(kind.of_effect) and EFFECTS[kind.of_effect].forms[0].vector)
-                 for kind in kinds)
+    return tuple(Candidate(kind.name, kind.name, kind.columns, nuisance=kind) for kind in kinds)

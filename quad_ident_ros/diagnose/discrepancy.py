@@ -5,12 +5,11 @@ What the model cannot be right about: the error of form, marginalised out of the
 
 After Kennedy and O'Hagan (J. R. Stat. Soc. B 63, 2001) a residual is noise and a discrepancy of
 the model. Over each block of about a second the discrepancy has two parts, both normal about zero:
-every term of an effect's formula does what it says times one plus a relative error, apart for
-translation and rotation; and a force and a moment act that nothing explains. Each parameter has
-a term, the components of a wind have one together. The relative error is given, the size of
-force and moment is estimated with the effects. Within a block its errors are the same, from block
-to block they are independent. Errors of terms, and not of effects, are the same whichever effects
-the terms are counted to.
+every effect does what its formula says times one plus a relative error, apart for translation and
+rotation; and a force and a moment act that nothing explains. A term of a formula that does what
+another effect does errs by itself, so that its name does not matter. The relative error is given,
+the size of force and moment is estimated with the effects. Within a block its errors are the same,
+from block to block they are independent.
 """
 
 from dataclasses import dataclass

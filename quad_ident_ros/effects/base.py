@@ -82,10 +82,10 @@ class Form:
     first, translation (forces), rotation (moments and what is measured of the rate) or both;
     on_rotors: it acts on rotors, so that a vehicle flown from U1..U4 needs some; needs_voltage: it
     acts only where the voltage is recorded; without_voltage: it says something only where none is;
-    vector: its parameters are the components of one vector in the world, one term of the law;
-    needs_reference: it shows only against a position, a velocity or an attitude, not in
-    accelerometer and gyro alone; needs_height: it shows only where the height was measured;
-    same_motion, told_by: as of Effect, of this form alone.
+    apart: parameters that do what another effect does, each of them a term that errs by itself,
+    for how wrong a law may be is no matter of names; needs_reference: it shows only against a
+    position, a velocity or an attitude, not in accelerometer and gyro alone; needs_height: it
+    shows only where the height was measured; same_motion, told_by: as of Effect, of this form.
     """
 
     name: str
@@ -103,7 +103,7 @@ class Form:
     on_rotors: bool = True
     needs_voltage: bool = False
     without_voltage: bool = False
-    vector: bool = False
+    apart: tuple[str, ...] = ()
     needs_reference: bool = False
     needs_height: bool = False
     same_motion: tuple[tuple[str, str], ...] = ()

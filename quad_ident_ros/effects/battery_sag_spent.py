@@ -24,6 +24,6 @@ FORM = Form(
                           'share of the thrust lost per second of flight')),
     source='thrust (1 - spent - fall t): without a recorded voltage nobody knows how full the '
            'battery was as the flight began',
-    thrust=thrust, without_voltage=True,
+    thrust=thrust, without_voltage=True, apart=('spent',),
     same_motion=(('charge that was used before the flight', 'thrust coefficient'),),
     told_by='a recorded voltage, or flights from a full battery')

@@ -31,6 +31,6 @@ FORM = Form(
            'sum of the cubes of the speeds: open-circuit voltage behind a resistance, where the '
            'nominal thrust is that of a full battery without load; Tremblay and Dessaint, World '
            'Electric Vehicle Journal 3, 2009',
-    thrust=thrust, without_voltage=True,
+    thrust=thrust, without_voltage=True, apart=('lost_before',),
     same_motion=(('charge that was used before the flight', 'thrust coefficient'),),
     told_by='a recorded voltage, or flights from a full battery')

@@ -27,7 +27,7 @@ FORM = Form(
                      for axis, size in SIZES.items()),
     source='air velocity = velocity - wind, in everything that depends on it',
     acts_on='translation', on_rotors=False,
-    air=air, needs_reference=True, vector=True)
+    air=air, needs_reference=True)
 EFFECT = Effect(
     name='wind', title='steady wind', forms=(FORM,),
     excitation='flight in several directions or headings; it acts through drag, known or found',
