@@ -98,6 +98,9 @@ def run(options: argparse.Namespace) -> None:
                            lambda share: bar.update(task, completed=share))
     if found.code is not None:
         _refuse_others(_beside(options.output))
+    elif _is_code_of_ours(Path(options.output)):
+        raise InputError(f'{options.output}: this would write over the code beside a file that '
+                         'was exported before; give another name')
     _write(options.output, mark_of(source) + found.text)
     if found.code is not None:
         _write(_beside(options.output), found.code.text)
@@ -149,10 +152,14 @@ def _beside(path: str) -> Path:
 
 def _refuse_others(path: Path) -> None:
     """Raise InputError where code would overwrite a file that we did not write."""
-    if path.exists() and (not path.is_file() or CODE_SAYS not in path.read_text(
-            'utf-8', 'replace')[:200]):
+    if path.exists() and not _is_code_of_ours(path):
         raise InputError(f'{path}: the code beside the file would be written over this; name '
                          'another --output')
+
+
+def _is_code_of_ours(path: Path) -> bool:
+    """Return whether a file is code that was written beside another one."""
+    return path.is_file() and CODE_SAYS in path.read_text('utf-8', 'replace')[:200]
 
 
 def _write(path: str | Path, text: str) -> None:

@@ -21,6 +21,7 @@ LEAST_RATE = 40.0       # Hz of measured speeds; slower ones do not show lags
 COPY, COPIED = 1e-9, 1e-4   # of the variance, and s: residual and delay of a copy of the
                             # commands, which no sensor measures
 DELAYS, LAGS = np.arange(-0.02, 0.121, 0.01), np.array([0.0, 0.01, 0.02, 0.04, 0.08, 0.16])
+SPARSE = slice(None, None, 4)   # samples that tell which of these are nearest
 SMALL = 0.5 / RATE      # s: half a sample of what a diagnosis looks at
 FINEST = 1e-5           # s: no clock is finer
 
@@ -124,14 +125,16 @@ def rotor_answer(record: FlightRecord) -> RotorAnswer | None:
 
     beside = _sag(record, part, speeds)
 
-    def left(answer: np.ndarray) -> float:
-        return float(np.sum(_apart(speeds, [answer, *beside])[0] ** 2))
+    def rest_of(answer: np.ndarray, used: slice = slice(None)) -> float:
+        columns = [answer, *(one[used] for one in beside)]
+        return float(np.sum(_apart(speeds[used], columns)[0] ** 2))
 
     # A delay moves the answer of a lag in time, nearly enough to begin with.
-    lagged = [acted(0.0, lag) for lag in LAGS]
-    near = np.array(min(((delay, lag) for delay in DELAYS for lag in LAGS), key=lambda one: left(
-        _moved(t, lagged[int(np.searchsorted(LAGS, one[1]))], one[0]))))
-    best = minimize(lambda place: left(acted(*place)), near, method='Nelder-Mead', options={
+    lagged = [(lag, acted(0.0, lag)) for lag in LAGS]
+    near = np.array(min(
+        (rest_of(_moved(t[SPARSE], t, answer, delay), SPARSE), delay, lag)
+        for delay in DELAYS for lag, answer in lagged)[1:])
+    best = minimize(lambda place: rest_of(acted(*place)), near, method='Nelder-Mead', options={
         'initial_simplex': near + np.array([[0.0, 0.0], [0.005, 0.0], [0.0, 0.005]]),
         'xatol': FINEST, 'fatol': np.inf, 'maxiter': 120}).x
     delay, lag = float(best[0]), max(float(best[1]), 0.0)
@@ -166,9 +169,9 @@ def _part(t: np.ndarray) -> slice:
     return slice(begin, min(end, begin + MOST))
 
 
-def _moved(t: np.ndarray, values: np.ndarray, late: float) -> np.ndarray:
-    """Return values (N, n) at t (N,) s that come so many s later."""
-    return np.stack([np.interp(t - late, t, column) for column in values.T], axis=-1)
+def _moved(at: np.ndarray, t: np.ndarray, values: np.ndarray, late: float) -> np.ndarray:
+    """Return what values (N, n) at t (N,) s are at times (K,) s if they come later, (K, n)."""
+    return np.stack([np.interp(at - late, t, column) for column in values.T], axis=-1)
 
 
 def _apart(speeds: np.ndarray, columns: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:

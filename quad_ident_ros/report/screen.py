@@ -96,6 +96,10 @@ class _Screen(Console):
         super().print(*objects, **options)
         self.width = wide
 
+    def on_broken_pipe(self) -> None:
+        """Leave what comes next to the command, which may have files to write; rich would end."""
+        raise BrokenPipeError
+
     def _fit(self, table: Table) -> int:
         """Make the columns of a table as wide as they may be, and return the width that it has."""
         cells = [[str(cell) for cell in (column.header, *column.cells)]

@@ -226,6 +226,11 @@ def test_the_command_writes_it_beside_the_model(tmp_path, capsys):
     said = capsys.readouterr().err.strip()
     assert 'mine.py: the code beside the file would be written over this' in said
     assert '\n' not in said and not (tmp_path / 'mine.xml').exists()
+    # Nor is it lost where a simulator's own file is code.
+    assert main(['export', str(tmp_path / 'v.yaml'), '--to', 'rotorpy', '-o',
+                 str(tmp_path / 'like_real.py')]) == 2
+    assert 'like_real.py: this would write over the code beside a file' in capsys.readouterr().err
+    assert (tmp_path / 'like_real.py').read_text() == text
 
 
 @pytest.mark.parametrize('delay', [0.0005, 0.004, 0.0041, 0.0059])
