@@ -26,8 +26,13 @@ def real_vehicle() -> Vehicle:
     return load_vehicle(NANOBENCH / 'vehicle.yaml')
 
 
+def whole_real_flight(name: str) -> FlightRecord:
+    """Return a real flight, from take-off to landing."""
+    return load(NANOBENCH / f'{name}.csv.gz')
+
+
 def real_flight(name: str) -> FlightRecord:
     """Return a cut of a real flight, one of CUTS."""
-    whole = load(NANOBENCH / f'{name}.csv.gz')
+    whole = whole_real_flight(name)
     first = int((whole.t - whole.t[0] < CUTS[name] - 1e-6).sum())
     return whole.slice(first, first + LENGTH)
