@@ -14,7 +14,7 @@ from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.diagnose.select import select
 from quad_ident_ros.greybox.noise import whole_noise
 
-pytestmark = [needs_real_flights, pytest.mark.slow]
+pytestmark = [needs_real_flights, pytest.mark.slow, pytest.mark.xdist_group('far_off')]
 
 
 @pytest.fixture(scope='module')

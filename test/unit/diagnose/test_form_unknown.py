@@ -17,7 +17,7 @@ from quad_ident_ros.model.vehicle import load_vehicle
 from quad_ident_ros.report.received import diagnosis_from
 from quad_ident_ros.report.verdict import form_of, next_step, verdict_line
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group('form_unknown')]
 NOMINAL = load_vehicle('hummingbird')
 DRAG = 0.3 * NOMINAL.mass     # kg/s
 EFFECTS = ['rotor_drag', 'mass_offset', 'motor_lag']     # few: the search is no matter here

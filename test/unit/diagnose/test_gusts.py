@@ -15,6 +15,7 @@ from quad_ident_ros.model.dynamics import STATES
 from quad_ident_ros.model.vehicle import load_vehicle
 
 pytestmark = pytest.mark.slow
+in_one_process = pytest.mark.xdist_group('gusty')    # their diagnosis takes a minute and more
 STEP, SECONDS, DRAG = 0.01, 15.0, 0.06      # s, s, kg/m
 LIGHT = 1.5                                 # m/s, light turbulence near the ground
 NOISE = np.repeat([1e-3, 1e-2, 2e-3, 1e-2], [3, 3, 4, 3])
@@ -89,6 +90,7 @@ def holds(found, drag):
             and value.std < 0.5 * drag)
 
 
+@in_one_process
 def test_a_drag_is_named_by_which_gusts_act(gusty):
     assert holds(gusty, DRAG)
 
@@ -100,6 +102,7 @@ def test_a_large_drag_is_as_large_in_strong_gusts():
     assert holds(found, 0.15)
 
 
+@in_one_process
 def test_gusts_are_each_flights_own_and_stay_in_the_gap(gusty):
     values = np.array([*gusty.nuisances['gusts']['values'],
                        gusty.nuisances['gusts']['held_out']])
