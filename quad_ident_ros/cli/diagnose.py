@@ -17,7 +17,6 @@ from quad_ident_ros.cli.options import (
     thrust_by_log,
     vehicle_from,
 )
-from quad_ident_ros.cli.outputs import printed_first
 from quad_ident_ros.closed_loop.controller import controller_of
 from quad_ident_ros.closed_loop.controller import INTERFACE as OF_CONTROLLERS
 from quad_ident_ros.data.split import joined
@@ -25,7 +24,6 @@ from quad_ident_ros.data.told_apart import Apart
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.diagnose.priors import load_priors
 from quad_ident_ros.diagnose.provenance import Run, run_of
-from quad_ident_ros.diagnose.result import Diagnosis
 from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.errors import InputError
@@ -144,24 +142,19 @@ def run(options):
         found = diagnose(records, vehicle, hold_out=held, effects=effects, rules=rules,
                          simulator=simulator, controller=controller,
                          on_progress=lambda share: bar.update(task, completed=share))
-    with printed_first(None if options.json == '-' else lambda: _say(found, options)):
-        if options.report:
-            from quad_ident_ros.report import gap_page  # it draws: half a second to import
-            gap_page.write(options.report, replace(found, run=_run_of(options)),
-                           options.out_vehicle)
-        if options.out_vehicle:
-            made = found.corrected(vehicle)
-            if options.residual and found.residual is not None:
-                made = replace(made, residual=found.residual)
-            write_vehicle(options.out_vehicle, made)
-        if options.json:
-            write_json(options.json, found.as_data())
-
-
-def _say(found: Diagnosis, options: argparse.Namespace) -> None:
-    """Print a Diagnosis, and what is written of it."""
-    show(found, sys.stdout, options.detail, options.out_vehicle)
-    if options.residual:
+    if options.json != '-':
+        show(found, sys.stdout, options.detail, options.out_vehicle)
+    if options.json:
+        write_json(options.json, found.as_data())
+    if options.report:
+        from quad_ident_ros.report import gap_page  # it draws: half a second to import
+        gap_page.write(options.report, replace(found, run=_run_of(options)), options.out_vehicle)
+    if options.out_vehicle:
+        made = found.corrected(vehicle)
+        if options.residual and found.residual is not None:
+            made = replace(made, residual=found.residual)
+        write_vehicle(options.out_vehicle, made)
+    if options.residual and options.json != '-':
         print(residual_line(found))
 
 

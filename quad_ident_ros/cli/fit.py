@@ -13,7 +13,6 @@ from quad_ident_ros.cli.options import (
     thrust_by_log,
     vehicle_from,
 )
-from quad_ident_ros.cli.outputs import printed_first
 from quad_ident_ros.effects.registry import EFFECTS, titled
 from quad_ident_ros.greybox.cautions import cautions
 from quad_ident_ros.greybox.free import columns_of_names, EXCITATION
@@ -76,11 +75,12 @@ def run(options):
             task, description='fitting', completed=share))
     found = replace(found, findings=(*found.findings, *cautions(
         tuple(zip(found.flights, quality, strict=True)), free)))
-    with printed_first(None if options.json == '-' else lambda: show(found)):
-        if options.out_vehicle:
-            write_vehicle(options.out_vehicle, fitted_vehicle(found))
-        if options.json:
-            write_json(options.json, as_data(found))
+    if options.json != '-':
+        show(found)
+    if options.out_vehicle:
+        write_vehicle(options.out_vehicle, fitted_vehicle(found))
+    if options.json:
+        write_json(options.json, as_data(found))
 
 
 def show(found):

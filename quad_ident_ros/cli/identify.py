@@ -5,7 +5,6 @@
 import argparse
 
 from quad_ident_ros.cli.options import add_selection, flights_from, selection_of
-from quad_ident_ros.cli.outputs import printed_first
 from quad_ident_ros.data.commands import with_inputs
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.identify.identify import identify, Settings, with_budget
@@ -90,11 +89,12 @@ def run(options):
                        completed=settings.methods.index(method) + (share if not output else 0))
 
         result = identify(records, settings, on_progress=on_progress)
-    with printed_first(None if options.json == '-' else lambda: show(result)):
-        if options.picture:
-            save_responses(result, options.picture, 'Measured and fitted responses')
-        if options.json:
-            write_json(options.json, as_data(result))
+    if options.json != '-':
+        show(result)
+    if options.picture:
+        save_responses(result, options.picture, 'Measured and fitted responses')
+    if options.json:
+        write_json(options.json, as_data(result))
 
 
 def show(result):

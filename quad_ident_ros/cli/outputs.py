@@ -1,9 +1,7 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What no command may write to, and what is written whoever reads along."""
+"""What no command may write to."""
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
 import tempfile
 
@@ -20,25 +18,6 @@ FILES = ('out_vehicle', 'out_priors', 'json', 'report', 'picture', 'write_mappin
 FOLDERS = ('simulate', 'demo', 'paper')
 """Commands whose output is a folder."""
 PAGES = ('.html', '.htm')
-
-
-@contextmanager
-def printed_first(show: Callable[[], object] | None) -> Iterator[None]:
-    """
-    Print what a command has to say before its files are written, and write them in any case.
-
-    Whoever reads it may have enough after a line, as `head` has: the files were asked for all the
-    same. Args: show: prints, None where nothing is to be. Raises BrokenPipeError at the end.
-    """
-    enough = None
-    if show is not None:
-        try:
-            show()
-        except BrokenPipeError as error:
-            enough = error
-    yield
-    if enough is not None:
-        raise enough
 
 
 def check_outputs(options):

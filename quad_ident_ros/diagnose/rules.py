@@ -61,9 +61,8 @@ class Rules:
       usual_presence: share of the vehicles that an effect is present in, from which that of a
         fleet differs: one to three of some seventeen in the flights of `calibration`.
     Discrepancy (see discrepancy.py):
-      form_error: relative error of an effect's formula. Published laws of one effect
-        differ from one another by 10 to 30 % over the range in which they are used. A fleet may
-        know better.
+      form_error: relative error of an effect's formula. Published laws of one effect differ from
+        one another by 10 to 30 % over the range in which they are used. A fleet may know better.
       form_time: s over which that error stays the same: that of a turn or a stop of a flight.
     Vehicle file:
       constant_error: how far a constant is usually off whose file states no deviation, as a share:

@@ -97,8 +97,10 @@ class _Screen(Console):
         self.width = wide
 
     def on_broken_pipe(self) -> None:
-        """Leave what comes next to the command, which may have files to write; rich would end."""
-        raise BrokenPipeError
+        """Go on though nobody reads any more, as after `| head`: there may be files to write."""
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, self.file.fileno())
+        os.close(nowhere)
 
     def _fit(self, table: Table) -> int:
         """Make the columns of a table as wide as they may be, and return the width that it has."""

@@ -6,6 +6,8 @@ from argparse import Namespace
 import json
 import os
 from pathlib import Path
+import subprocess
+import sys
 
 import pytest
 from reader_checks import SMALL
@@ -14,6 +16,9 @@ from quad_ident_ros.cli.main import main
 from quad_ident_ros.cli.outputs import check_outputs, OUTPUTS
 from quad_ident_ros.data.csv import write_csv
 from quad_ident_ros.errors import InputError
+from quad_ident_ros.flight.fly import fly_closed_loop
+from quad_ident_ros.flight.measure import SENSORS
+from quad_ident_ros.model.vehicle import load_vehicle
 
 
 @pytest.mark.parametrize('other', ['same', './same', '../{here}/same'])
@@ -114,3 +119,24 @@ def test_a_vehicle_is_not_sought_where_it_cannot_be_written(closed, capsys, comm
     """The flight is missing as well: the error that is known first comes first."""
     assert main([command, *words, f'{closed}/real.yaml']) == 2
     assert f'real.yaml: cannot be written into {closed}: ' in capsys.readouterr().err
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize('words, files', [
+    (['info', 'f.csv', '--json', 'info.json'], ['info.json']),
+    (['diagnose', 'f.csv', '--vehicle', 'hummingbird', '--effects', 'rotor_drag', '--json',
+      'd.json', '--report', 'd.html', '--out-vehicle', 'd.yaml'],
+     ['d.json', 'd.html', 'd.yaml'])])
+def test_who_has_read_enough_has_the_files_all_the_same(tmp_path, words, files):
+    """As by `| head -1`, or a pager that is left."""
+    write_csv(tmp_path / 'f.csv', fly_closed_loop(
+        load_vehicle('hummingbird'), {'rotor_drag': {'coefficient': 0.3}}, 'figure8',
+        duration=8.0, noise=SENSORS['mocap_imu']))
+    reads, writes = os.pipe()
+    os.close(reads)
+    with os.fdopen(writes, 'wb') as nobody:
+        done = subprocess.run([sys.executable, '-m', 'quad_ident_ros', *words], cwd=tmp_path,
+                              stdout=nobody, stderr=subprocess.PIPE, text=True, check=False,
+                              env={**os.environ, 'PYTHONPATH': os.pathsep.join(sys.path)})
+    assert done.returncode == 0 and 'Traceback' not in done.stderr
+    assert all((tmp_path / name).stat().st_size for name in files)

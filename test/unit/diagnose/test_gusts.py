@@ -15,7 +15,7 @@ from quad_ident_ros.model.dynamics import STATES
 from quad_ident_ros.model.vehicle import load_vehicle
 
 pytestmark = pytest.mark.slow
-in_one_process = pytest.mark.xdist_group('gusty')    # their diagnosis takes a minute and more
+in_one_process = pytest.mark.xdist_group('gusty')    # they share a diagnosis of a minute
 STEP, SECONDS, DRAG = 0.01, 15.0, 0.06      # s, s, kg/m
 LIGHT = 1.5                                 # m/s, light turbulence near the ground
 NOISE = np.repeat([1e-3, 1e-2, 2e-3, 1e-2], [3, 3, 4, 3])

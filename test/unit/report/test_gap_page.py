@@ -9,7 +9,6 @@ import io
 import json
 from pathlib import Path
 import re
-import sys
 
 import matplotlib.image
 import numpy as np
@@ -437,21 +436,6 @@ def test_the_command_writes_it(paths, tmp_path, capsys):
     [vehicle] = re.findall(r'<pre tabindex="0">(.*?)</pre>', text, flags=re.DOTALL)
     (tmp_path / 'again.yaml').write_text(unescape(vehicle))
     assert load_vehicle(tmp_path / 'again.yaml') == VEHICLE
-
-
-class Closed(io.StringIO):
-    def write(self, text):
-        raise BrokenPipeError
-
-
-def test_who_has_read_enough_has_the_files_all_the_same(paths, tmp_path, monkeypatch):
-    """As by `| head -1`, or a pager that is left."""
-    monkeypatch.setattr(sys, 'stdout', Closed())
-    files = {name: tmp_path / f'out.{name}' for name in ('json', 'html', 'yaml')}
-    assert main(['diagnose', *paths, '--vehicle', 'hummingbird', '--effects', 'rotor_drag',
-                 '--json', str(files['json']), '--report', str(files['html']),
-                 '--out-vehicle', str(files['yaml'])]) == 141
-    assert all(path.stat().st_size for path in files.values())
 
 
 def test_a_gap_within_the_tolerance_of_the_user_does_not_matter(paths, tmp_path):
