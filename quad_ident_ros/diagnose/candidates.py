@@ -70,7 +70,7 @@ def candidates(flights: list, vehicle: Vehicle, rules: Rules,
             continue
         forms = [form for form in _known_first(effect, vehicle)
                  if not (form.without_voltage if voltage else form.needs_voltage)
-                 and not (inertial(flights) and form.needs_reference)
+                 and not (inertial(flights) and (form.needs_reference or form.without_voltage))
                  and not (_without_height(flights) and form.needs_height)]
         for form in forms:
             columns = tuple(

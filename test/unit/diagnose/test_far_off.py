@@ -4,15 +4,24 @@
 
 import numpy as np
 import pytest
-from real import CUTS, needs_real_flights, real_flight, real_vehicle, whole_real_flight
+from real import (
+    CUTS,
+    needs_real_flights,
+    real_flight,
+    real_vehicle,
+    SHARED,
+    whole_real_flight,
+)
 
-from docs.real_flights import HELD_OUT, pushed, same, TRAINING
+from docs.real_flights import HELD_OUT, pushed, same, TRAINING, VEHICLES
+from quad_ident_ros.data.load import load_all
 from quad_ident_ros.diagnose.candidates import candidates
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.diagnose.intake import take_in
 from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.diagnose.select import select
 from quad_ident_ros.greybox.noise import whole_noise
+from quad_ident_ros.model.vehicle import load_vehicle
 
 pytestmark = [needs_real_flights, pytest.mark.slow, pytest.mark.xdist_group('far_off')]
 
@@ -69,3 +78,10 @@ def test_the_drag_and_the_fall_of_the_thrust_are_named_in_brisk_flights():
     assert {'rotor_drag', 'battery_sag'} <= set(found.verdict)
     # The mean error of position of the data set's own model, given the attitude, is 0.028 m.
     assert found.gap_given_attitude.after['position'] < 0.028
+
+
+def test_the_motors_are_named_in_a_short_flight_without_a_pose():
+    """Seven seconds in the air with accelerometer and gyro, as on docs/real_flights.md."""
+    vehicle = load_vehicle(VEHICLES / 'crazyflie_27g.yaml')
+    flights = load_all(SHARED / 'crazyflie_usd' / 'log16', None, vehicle)
+    assert {'motor_lag', 'thrust_scale'} <= set(diagnose(flights, vehicle).verdict)
