@@ -9,7 +9,7 @@ import numpy as np
 
 from quad_ident_ros.diagnose.candidates import Candidate, nuisance_candidates, usual_forms
 from quad_ident_ros.diagnose.discrepancy import AXES, log_likelihood, scales
-from quad_ident_ros.diagnose.evidence import beam, key_of, Quadratic
+from quad_ident_ros.diagnose.evidence import beam, excludes, key_of, Quadratic
 from quad_ident_ros.diagnose.fitted import (
     distances_of,
     effects_in,
@@ -67,9 +67,15 @@ def select(flights: list[Flight], vehicle: Vehicle, causes: tuple[Candidate, ...
     """
     search = _searched(_Search(flights, vehicle, causes, rules, gusty=gusty),
                        lambda share: on_progress(ONCE * share))
+    start = None
+    if inertial(flights) and search.too_wide((largest := search.largest())[1]):
+        # What the nominal vehicle leaves, with which the search began, hid the effects as noise.
+        start = largest
+        search = _searched(_Search(flights, vehicle, causes, rules, start=start),
+                           lambda share: on_progress(ONCE))
     alike = search.alike_in_nuisances()
     if alike:
-        search = _searched(_Search(flights, vehicle, causes, rules, alike, gusty),
+        search = _searched(_Search(flights, vehicle, causes, rules, alike, gusty, start),
                            lambda share: on_progress(ONCE + (1.0 - ONCE) * share))
     on_progress(1.0)
     return search.selection()
@@ -110,7 +116,8 @@ class _Search:
     grids: tuple
 
     def __init__(self, flights: list[Flight], vehicle: Vehicle, causes: tuple[Candidate, ...],
-                 rules: Rules, differ: Collection[str] = (), gusty: bool = False) -> None:
+                 rules: Rules, differ: Collection[str] = (), gusty: bool = False,
+                 start: tuple[tuple, Estimate] | None = None) -> None:
         self.flights, self.vehicle, self.rules = flights, vehicle, rules
         self.all_causes = causes
         self.nuisances = nuisance_candidates(vehicle, flights, differ, gusty)
@@ -118,11 +125,16 @@ class _Search:
         self.noise = [quick_noise(errors_along(flight, vehicle, nominal(vehicle), start))
                       for flight, start in zip(flights, starts, strict=True)]
         self.slow: np.ndarray | None = None
+        self.tried, self.first = {}, ()
         if inertial(flights):
             # Integrals change little from sample to sample, whatever their errors are.
             self.slow = trim_wrench(vehicle)
-            self.noise = self.whole_noise(self.nothing(self.noise))
-        self.tried = {(): self.nothing(self.noise)}
+            self.noise = self.whole_noise(start[1] if start else self.nothing(self.noise))
+        if start:
+            self.first, fit = start
+            self.tried[self.first] = refitted(flights, vehicle, fit.z, self.first, self.noise,
+                                              fit.nuisances, fit.starts, slow=self.slow)
+        self.tried[()] = self.nothing(self.noise)
         self.best, self.judged, self.ranked = None, {}, []
         self.linearised_at: tuple = ()
         self.judged_around: dict[tuple, Fitted] = {}
@@ -131,6 +143,34 @@ class _Search:
         """Return the Estimate of the empty set."""
         return estimate(self.flights, self.vehicle, nominal(self.vehicle), [], noise=noise,
                         iterations=2, slow=self.slow)
+
+    def largest(self) -> tuple[tuple, Estimate]:
+        """Return a set of as many usual forms as go together, and its Estimate."""
+        assert self.best is not None
+        chosen: tuple = ()
+        for cause in self.all_causes:
+            if cause.usual and not any(excludes(cause, other) for other in chosen):
+                chosen = key_of((*chosen, cause))
+        z, size = nominal(self.vehicle), limits(self.vehicle)[2]
+        # Slopes at no lag hardly show what a lag does: see other_actuators.
+        late = [column for cause in _actuators(chosen) for column in cause.columns]
+        z[late] += size[late]
+        fit = self.best.estimate
+        noise = [quick_noise(raw) for raw in fit.quiet]
+        for _ in range(TURNS):
+            fit = refitted(self.flights, self.vehicle, z, chosen, noise, fit.nuisances,
+                           fit.starts, slow=self.slow)
+            z, noise = fit.z, self.whole_noise(fit)
+        return chosen, fit
+
+    def too_wide(self, largest: Estimate) -> bool:
+        """
+        Return whether the Estimate of the largest set leaves much less than the noise here.
+
+        The noise is what the largest model leaves (Mallows, Technometrics 15, 1973).
+        """
+        ratio = np.median(np.array(self.noise) / self.whole_noise(largest), axis=0)
+        return bool(np.max(ratio) > self.rules.coloured)
 
     def weigh_anew(self) -> bool:
         """
@@ -201,7 +241,7 @@ class _Search:
                                if cause in causes or any(cause in key for key in self.tried)
                                for column in cause.columns})
         self.rows = rows_of(self.all_causes, self.nuisances, self.columns, len(self.flights))
-        best = self.best.chosen if self.best else ()
+        best = self.best.chosen if self.best else self.first
         stood_at = set()
         for turn in range(ROUNDS):
             self.stand_at(best)

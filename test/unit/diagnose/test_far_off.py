@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Real flights whose nominal model is lost within half a second."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from real import (
@@ -85,3 +87,15 @@ def test_the_motors_are_named_in_a_short_flight_without_a_pose():
     vehicle = load_vehicle(VEHICLES / 'crazyflie_27g.yaml')
     flights = load_all(SHARED / 'crazyflie_usd' / 'log16', None, vehicle)
     assert {'motor_lag', 'thrust_scale'} <= set(diagnose(flights, vehicle).verdict)
+
+
+def test_what_the_nominal_vehicle_leaves_hides_no_motors_as_noise():
+    """Of the same flight the first part alone, after which the search had found nothing."""
+    vehicle = load_vehicle(VEHICLES / 'crazyflie_27g.yaml')
+    [whole] = load_all(SHARED / 'crazyflie_usd' / 'log16', None, vehicle)
+    begin = whole.t < whole.t[0] + 0.7 * (whole.t[-1] - whole.t[0])
+    part = replace(whole, t=whole.t[begin],
+                   columns={name: values[begin] for name, values in whole.columns.items()})
+    found = diagnose([part], vehicle)
+    assert 'motor_lag' in found.verdict
+    assert found.gap.after['velocity'] < 0.8 * found.gap.before['velocity']
