@@ -23,6 +23,7 @@ from quad_ident_ros.data.quality import (
     gyro,
     moments,
     rotors,
+    rounding,
     saturation,
     stale,
     thrust,
@@ -53,7 +54,7 @@ COMPARISONS = (stale.held, stale.ended, stale.stuck, stale.marked, glitches.atti
                rotors.hover, rotors.size, thrust.curve, thrust.carried, thrust.other_vehicle,
                rotors.order_and_spin, moments.unit, thrust.level, clock.attitude, clock.velocity,
                clock.commands, ground.stands, gyro.bias, answer.commands, saturation.speeds,
-               excitation.axes)
+               rounding.commands, excitation.axes)
 """Checks of columns against each other, which one impossible value would decide."""
 
 TOLD = 'commands', 'logging', 'differentiated'
