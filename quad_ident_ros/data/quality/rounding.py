@@ -10,12 +10,12 @@ from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.model.vehicle import Vehicle
 
 FEWEST = 5      # levels: fewer may be those of an experiment
-OFTEN = 10.0    # times that a level comes, at least, in the mean: numbers that nobody rounded differ
-EVEN = 3.0      # times the 10th percentile of the steps is the 90th, at most: a motor's curve may
-                # make rounded signals uneven, a command that is held until the next differs by far
+OFTEN = 10.0    # times that a level comes in the mean, at least: more than by chance
+EVEN = 3.0      # times the 10th percentile of the steps is the 90th, at most: the curve of a motor
+                # makes rounded signals uneven, a command that is held until the next far more so
 SLOW = 1.0      # s; what changes more slowly is trim, which rounding leaves right in the mean
-COARSE = 0.01   # of the variance: a regression on commands with such errors is too small by as much
-                # (Fuller, Measurement Error Models, section 1.1.1, 1987), a per cent of an effect
+COARSE = 0.01   # of the variance: a regression on commands with such errors comes out too small
+                # by as much (Fuller, Measurement Error Models, section 1.1.1, 1987)
 
 
 def commands(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:

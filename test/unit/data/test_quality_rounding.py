@@ -32,7 +32,7 @@ def with_commands(record, change):
                                     for name, values in record.columns.items()})
 
 
-@pytest.mark.parametrize('step', [4.0, 8.0])
+@pytest.mark.parametrize('step', [6.0, 8.0])
 def test_rounding_is_told_with_its_step_and_share(step):
     t = np.arange(0.0, 10.0, 0.02)
     swing = np.stack([700.0 + SWING * np.sin(6.0 * np.pi * t + k) for k in range(4)])
