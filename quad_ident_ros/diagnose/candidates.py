@@ -18,8 +18,6 @@ from quad_ident_ros.model.vehicle import Vehicle
 SCALES = tuple(INDEX[name] for name in (*FACTORS['thrust_coefficient'], 'mass_offset.mass'))
 """Columns that scale thrust over mass."""
 
-FORMS_SEEN = 10     # vehicles' worth of doubt, by which a form is rarer that a fleet never named
-
 
 @dataclass(frozen=True)
 class Candidate:
@@ -126,7 +124,7 @@ def _share(name: str, form: Form, forms: Sequence[Form], rules: Rules) -> float:
               else (1.0 - rules.usual_form) / (len(forms) - 1) for one in forms]
     known = rules.priors[name].forms if name in rules.priors else {}
     if known:
-        shares = [known.get(one.name, share / FORMS_SEEN)
+        shares = [known.get(one.name, share / rules.forms_seen)
                   for one, share in zip(forms, shares, strict=True)]
         shares = [share / sum(shares) for share in shares]
     return shares[forms.index(form)]

@@ -11,7 +11,7 @@ from quad_ident_ros.diagnose.intake import take_in
 from quad_ident_ros.diagnose.rules import RULES, Rules
 from quad_ident_ros.effects.registry import Values
 from quad_ident_ros.greybox.errors import UNITS
-from quad_ident_ros.greybox.flights import Track
+from quad_ident_ros.greybox.flights import inertial, Track
 from quad_ident_ros.greybox.parameters import nominal
 from quad_ident_ros.model.vehicle import Vehicle
 
@@ -53,8 +53,10 @@ def carried(records: Sequence[FlightRecord], before: Vehicle, whole: Vehicle,
     every = {NOMINAL: before, WHOLE: whole, **parts}
     for name, vehicle in every.items():
         on_progress((1 + len(found)) / (1 + len(every)))    # the first step is the intake
-        found[name] = _gap(tracks, replace(vehicle, effects=_without(vehicle.effects, gone)),
-                           horizon)
+        flown = replace(vehicle, effects=_without(vehicle.effects, gone))
+        if inertial(intake.flights):    # the air is in the record, and the intake leaves it out
+            flown = replace(flown, linear_drag=intake.vehicle.linear_drag)
+        found[name] = _gap(tracks, flown, horizon)
     room = found[NOMINAL]['velocity'] - found[WHOLE]['velocity']
     shares = {name: (found[NOMINAL]['velocity'] - found[name]['velocity']) / room
               for name in parts} if room > LEAST * found[NOMINAL]['velocity'] else {}

@@ -10,7 +10,7 @@ from quad_ident_ros import schema
 from quad_ident_ros.arguments import flight_records, instance, READ, vehicle_given
 from quad_ident_ros.closed_loop.controller import NamedController
 from quad_ident_ros.closed_loop.reference import reference_of
-from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.data.record import FlightRecord, same_flight
 from quad_ident_ros.data.split import joined
 from quad_ident_ros.diagnose import advice, measure
 from quad_ident_ros.diagnose.bench import Bench
@@ -48,7 +48,7 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
     """
     Return the Diagnosis of flight records against a nominal vehicle and the effects that it has.
 
-    Args: hold_out: a record that takes no part in the fit or the choice, by default the last one
+    Args: hold_out: a record that takes no part in fits and search, by default the last one
     (half of the blocks of a single one); effects: names that may be named, by default all; rules:
     thresholds of the verdict; simulator: of the user, in which the flights are predicted, too;
     controller: whose tracking of the flight held out is compared with and without the effects;
@@ -68,7 +68,8 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
 
     reference = (None if controller is None or not given
                  else reference_of(joined(given)[-1] if hold_out is None else hold_out))
-    came = recorded([*given, *([] if hold_out is None else [hold_out])])
+    came = recorded(given if hold_out is None else [
+        *(record for record in given if not same_flight(record, hold_out)), hold_out])
     intake = take_in(given, vehicle, hold_out, rules)
     del given
     give_back()

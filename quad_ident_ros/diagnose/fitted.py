@@ -91,14 +91,15 @@ def prior_deviations(vehicle: Vehicle, rules: Rules) -> np.ndarray:
     """
     Return the standard deviations (Z,), SI, of the prior about the nominal vehicle.
 
-    Where a fleet knows how large an effect is, twice that, within the usual ones and a tenth of
-    these: the next vehicle may have more than its sisters.
+    Where a fleet knows how large an effect is, some times that, within the usual ones and a share
+    of these: the next vehicle may have more than its sisters.
     """
     wide = prior_sizes(vehicle, rules.prior_width)
     for effect, prior in rules.priors.items():
         for parameter, size in prior.sizes.items():
             column = INDEX[f'{effect}.{parameter}']
-            wide[column] = min(wide[column], max(2.0 * size, 0.1 * wide[column]))
+            wide[column] = min(wide[column], max(rules.fleet_width * size,
+                                                 rules.fleet_least * wide[column]))
     return wide
 
 

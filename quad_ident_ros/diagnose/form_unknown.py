@@ -92,8 +92,7 @@ def _action(bench: Bench, judged: Judgement, cause: Candidate,
 
 def in_errors(gained: np.ndarray, block: np.ndarray) -> float:
     """Return a sum over windows (B,) in standard errors by blocks (B,); 0 where one is all."""
-    sums = np.bincount(block, gained)
-    return in_standard_errors(sums) if len(sums) > 1 else 0.0
+    return in_standard_errors(np.bincount(block, gained))
 
 
 def _likeliest(values: np.ndarray, errors: np.ndarray, size: np.ndarray) -> np.ndarray:

@@ -47,9 +47,9 @@ class Intake:
     """
     Flights as a diagnosis takes them.
 
-    tracks: those learnt from; held_out: that which takes no part; flights: the tracks cut into
-    rollouts; late: {stream: s} that was moved in each, and clocks: the Clock, or None, of each,
-    the one held out last; findings: warnings, as data; refuted: effects of the actuators
+    tracks: those learnt from; held_out: that which takes no part in fits; flights: the tracks cut
+    into rollouts; late: {stream: s} that was moved in each, and clocks: the Clock, or None, of
+    each, the one held out last; findings: warnings, as data; refuted: effects of the actuators
     that measured rotor speeds speak against.
     """
 

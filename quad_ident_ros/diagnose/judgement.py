@@ -85,7 +85,7 @@ def judge(bench: Bench) -> Judgement:
                                  key=lambda each: presence(each, rules))
         idle = [removed for removed, one in smaller.items()
                 if not matters(model.gap, one.gap, before, noise, rules,
-                               clear([weights[cause] for cause in removed],
+                               clear({cause: weights[cause] for cause in removed},
                                      bench.distance(model, removed), rules),
                                form_error_beside(model.effects, removed, rules))]
         if not idle:
@@ -106,7 +106,7 @@ def judge(bench: Bench) -> Judgement:
     untold = bench.untold(model)
     stand_ins = tuple(cause for cause in model.effects
                       if cause not in absent and bench.stands_in(model, cause, untold))
-    present |= {cause.effect: rules.prior_odds for cause in stand_ins}
+    present |= {cause.effect: rules.prior_of(cause.effect) for cause in stand_ins}
     material = tuple(cause for cause in model.effects if cause not in {*absent, *stand_ins})
     if set(model.effects) <= set(full.effects):
         improbable = in_any_form(full.effects, absent)
@@ -119,6 +119,13 @@ def judge(bench: Bench) -> Judgement:
         final = bench.beside(model, small, full.z) if small else model
         improbable = in_any_form(final.effects, absent)
         final = bench.absent(final, improbable) if improbable else final
+    if improbable:
+        # What did something only beside effects that are not there does nothing without them.
+        idle_here = _idle(bench, final, material, weights, before, noise)
+        if idle_here:
+            final = bench.absent(final, in_any_form(final.effects, idle_here))
+            material = tuple(cause for cause in material if cause not in idle_here)
+            present |= {cause.effect: rules.prior_of(cause.effect) for cause in idle_here}
     fitted, final = final, bench.without_gusts(final)
     without = {cause: bench.without_gusts(one) for cause, one in without.items()}
     ends = _nominal_ends(bench, final)
@@ -130,6 +137,19 @@ def judge(bench: Bench) -> Judgement:
                      ends, bench.left_out(fitted), noises, noise_gaps,
                      remaining(final.gap, noise, rules),
                      unexplained(final.gap, gaps.gap(ends), noise, bool(material), rules))
+
+
+def _idle(bench: Bench, model: Model, causes: tuple, weights: dict, before: dict, noise: dict
+          ) -> tuple:
+    """Return those of some effects that do not matter in a Model, whatever form it has them in."""
+    slopes, rules, found = bench.slopes(model), bench.rules, []
+    for cause, here in zip(causes, in_forms_of(model.effects, causes), strict=True):
+        without = bench.without(model, (here,), slopes)
+        apart = clear({cause: weights[cause]}, bench.distance(model, (here,)), rules)
+        if not matters(model.gap, without.gap, before, noise, rules, apart,
+                       form_error_beside(model.effects, (here,), rules)):
+            found.append(cause)
+    return tuple(found)
 
 
 def in_forms_of(effects: Iterable[Candidate], causes: Iterable[Candidate]
@@ -200,7 +220,9 @@ def stability(with_it: tuple, without: tuple, noise: dict, rules: Rules) -> floa
 
 
 def in_standard_errors(sums: np.ndarray) -> float:
-    """Return the total of sums over blocks of time, (K,), over its standard error."""
+    """Return the total of sums over blocks of time, (K,), over its standard error; 0 of one."""
+    if len(sums) < 2:
+        return 0.0
     return float(np.sum(sums) / max(np.std(sums) * np.sqrt(len(sums)), 1e-300))
 
 
@@ -269,15 +291,16 @@ def _fewest(bench: Bench, model: Model, before: dict, noise: dict, present: dict
     return model
 
 
-def clear(weights: list[Weight], distance: float, rules: Rules) -> bool:
+def clear(weights: dict[Candidate, Weight], distance: float, rules: Rules) -> bool:
     """
     Return whether effects, at least one of them probable, together clearly differ from none.
 
     How much of the gap the errors of form of others may be is then no matter: the standard errors
     have these in them. Effects that cancel one another are together near none.
     """
-    return distance >= rules.shown and any(presence(weight, rules) >= rules.present
-                                           for weight in weights)
+    return distance >= rules.shown and any(
+        presence(weight, rules, rules.shift(cause.effect)) >= rules.present
+        for cause, weight in weights.items())
 
 
 def remaining(gap: dict, noise: dict, rules: Rules) -> dict:

@@ -3,6 +3,7 @@
 """How far the gap shrinks on the flight held out, and where it lies."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
@@ -20,6 +21,7 @@ from quad_ident_ros.diagnose.result import (
     Unexplained,
 )
 from quad_ident_ros.diagnose.rules import Rules
+from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.errors import UNITS
 from quad_ident_ros.greybox.flights import Track
 from quad_ident_ros.greybox.parameters import nominal
@@ -31,13 +33,15 @@ TRANSLATION = ('position', 'velocity')
 def open_loop_gap(bench: Bench, judged: Judgement) -> Gap:
     """Return the Gap of full open-loop predictions."""
     track = replace(bench.tracks[-1], guide=None)
-    horizons = {horizon: _gap(track, bench, judged, horizon)
-                for horizon in sorted({*gaps.HORIZONS, bench.horizon})}
-    head = horizons[bench.horizon]
+    head = _gap(track, bench, judged, bench.horizon)
+    horizons = {bench.horizon: head}
+    for horizon in {*gaps.HORIZONS} - {bench.horizon}:
+        with suppress(InputError):  # between the gaps of a lossy log no stretch may be as long
+            horizons[horizon] = _gap(track, bench, judged, horizon)
     return Gap(horizon=bench.horizon, units=UNITS, **head,
                closed=gaps.closed(*(head[stage]['velocity']
                                     for stage in ('before_own', 'after', 'noise'))),
-               horizons={str(horizon): values for horizon, values in horizons.items()},
+               horizons={str(horizon): values for horizon, values in sorted(horizons.items())},
                without={cause.effect: gaps.gap([gaps.ends(
                    track, bench.vehicle, judged.without[cause].vectors[-1], bench.horizon)])
                         for cause in judged.material})

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from quad_ident_ros.diagnose.judgement import in_standard_errors
 from quad_ident_ros.diagnose.residual_wrench import AIR, ResidualWrench, WINDOW
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.greybox.flights import Track
@@ -208,7 +209,6 @@ def _best_shrinkage(features: np.ndarray, windows: Windows, parts: dict, always:
         saved[:, inside] = y[inside] ** 2 - (y[inside] - predicted) ** 2
     best = np.argmax(saved.sum(axis=1), axis=0)
     for channel, k in enumerate(best):
-        blocks = np.bincount(windows.block, saved[k, :, channel])
-        if blocks.sum() <= rules.shown * np.std(blocks) * np.sqrt(len(blocks)):
+        if in_standard_errors(np.bincount(windows.block, saved[k, :, channel])) <= rules.shown:
             best[channel] = -1
     return best

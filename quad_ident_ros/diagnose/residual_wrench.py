@@ -133,6 +133,12 @@ def weights(vehicle: Vehicle) -> np.ndarray:
     return np.array([force, force, force, *moment])
 
 
+def shared_features(flights: Sequence[ResidualWrench]) -> list[str]:
+    """Return the names of the features that all flights have: without a position no height."""
+    return [name for name in flights[0].features
+            if all(name in flight.features for flight in flights)]
+
+
 def regime(flights: Sequence[ResidualWrench], channel: str, excess: float
            ) -> tuple[str, float]:
     """
@@ -146,7 +152,7 @@ def regime(flights: Sequence[ResidualWrench], channel: str, excess: float
     if energy.sum() <= 0:
         return 'nowhere above the noise', 0.0
     best = ('everywhere', 1.0, excess)
-    for name in flights[0].features:
+    for name in shared_features(flights):
         unit = flights[0].features[name][0]
         values = np.concatenate([flight.features[name][1] for flight in flights])
         if np.ptp(values) == 0:

@@ -65,7 +65,7 @@ class Ranked:
 
 @dataclass(frozen=True)
 class Minor:
-    """An effect that is surely there and closes less than what is material."""
+    """An effect that is more probable than not and closes less than what is material."""
 
     effect: str
     probability: float

@@ -42,7 +42,7 @@ class Rules:
         gyros are filtered at 20 Hz and more, effects take half a second; what the filter of a
         velocity remembers for longer is bounded by its deviation.
     Prior:
-      prior_odds: probability of each effect before looking. One to three of some seventeen are
+      prior_probability: of each effect, before looking. One to three of some seventeen are
         there in vehicles that are looked at; less, for the many that may be named by chance
         (multiplicity: Scott and Berger, Annals of Statistics 38, 2010).
       usual_form: share of that which the usual form of an effect has where there are others: an
@@ -58,6 +58,10 @@ class Rules:
       untried: log evidence, beside the best set, that the linear model alone may give a set: it
         has been wrong by more.
       priors: what a fleet knows of each effect instead, by name; without one: nothing.
+      forms_seen: times that a form is rarer which a fleet of many vehicles never named: what
+        ten vehicles without it say (Laplace's rule of succession). fleet_width, fleet_least:
+        the prior's width is so many times what a fleet has of an effect, since its next vehicle
+        may have more, and at least that share of the usual width, since its others were few.
       usual_presence: share of the vehicles that an effect is present in, from which that of a
         fleet differs: one to three of some seventeen in the flights of `calibration`.
     Discrepancy (see discrepancy.py):
@@ -138,13 +142,16 @@ class Rules:
     low_pass: float = 0.006
     sensitivity: float = 0.01
     walk_lags: tuple[float, float, float] = (0.02, 0.05, 0.1)
-    prior_odds: float = 0.02
+    prior_probability: float = 0.02
     usual_form: float = 0.5
     prior_width: float = 3.0
     alike: float = 3.0
     worth: float = 0.01
     untried: float = -2.0
     priors: dict[str, EffectPrior] = field(default_factory=dict)
+    forms_seen: float = 10.0
+    fleet_width: float = 2.0
+    fleet_least: float = 0.1
     usual_presence: float = 0.1
     form_error: float = 0.2
     form_time: float = 1.0
@@ -188,11 +195,11 @@ class Rules:
         known = self.priors.get(effect)
         return 0.0 if known is None else log_odds(known.present) - log_odds(self.usual_presence)
 
-    def odds(self, effect: str) -> float:
+    def prior_of(self, effect: str) -> float:
         """Return the probability that an effect is present, before looking."""
         if effect not in self.priors:
-            return self.prior_odds
-        return 1.0 / (1.0 + exp(-log_odds(self.prior_odds) - self.shift(effect)))
+            return self.prior_probability
+        return 1.0 / (1.0 + exp(-log_odds(self.prior_probability) - self.shift(effect)))
 
     def form_error_of(self, effect: str | None) -> float:
         """

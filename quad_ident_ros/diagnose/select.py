@@ -56,26 +56,26 @@ LOST = 4.0          # times the scatter that a fit may cost more than a subset d
 
 def select(flights: list[Flight], vehicle: Vehicle, causes: tuple[Candidate, ...],
            rules: Rules, on_progress: Callable[[float], None] = lambda share: None,
-           gusty: bool = False) -> Selection:
+           gusty: bool = False, start: tuple[tuple, Estimate] | None = None
+           ) -> Selection:
     """
     Return the Selection among candidate effects for flights of a vehicle.
 
     The errors are weighed by the noise from sample to sample. Where the residuals are much larger,
     by autocorrelated noise or by what no effect explains, their own size is the weight, until
-    the two agree. A moment that the best set has by flight although all flights have it alike is
+    the two agree. start: a set and its Estimate with which to begin, by default none: the nominal
+    vehicle. A moment that the best set has by flight although all flights have it alike is
     the vehicle's: the search is repeated with moments that only differ.
     """
-    search = _searched(_Search(flights, vehicle, causes, rules, gusty=gusty),
+    search = _searched(_Search(flights, vehicle, causes, rules, (), gusty, start),
                        lambda share: on_progress(ONCE * share))
-    start = None
     if inertial(flights) and search.too_wide((largest := search.largest())[1]):
         # What the nominal vehicle leaves, with which the search began, hid the effects as noise.
-        start = largest
-        search = _searched(_Search(flights, vehicle, causes, rules, start=start),
+        search = _searched(_Search(flights, vehicle, causes, rules, (), gusty, largest),
                            lambda share: on_progress(ONCE))
     alike = search.alike_in_nuisances()
     if alike:
-        search = _searched(_Search(flights, vehicle, causes, rules, alike, gusty, start),
+        search = _searched(_Search(flights, vehicle, causes, rules, alike, gusty),
                            lambda share: on_progress(ONCE + (1.0 - ONCE) * share))
     on_progress(1.0)
     return search.selection()
@@ -444,7 +444,7 @@ class _Search:
                 continue
             places = [fit.nuisances.columns.index(column) for column in cause.columns]
             values = fit.nuisances.values[:, places]
-            if are_alike(values, fit.nuisances.spreads[places], self.rules.prior_odds):
+            if are_alike(values, fit.nuisances.spreads[places], self.rules.prior_probability):
                 start = fit.z.copy()
                 start[list(cause.columns)] += values.mean(axis=0)
                 lower, upper, _ = limits(self.vehicle)[:, list(cause.columns)]
@@ -467,7 +467,7 @@ class _Search:
             if cause.nuisance is not None and cause.nuisance.mean_shares:
                 places = [nuisances.columns.index(column) for column in cause.columns]
                 if are_alike(nuisances.values[:, places], nuisances.spreads[places],
-                             self.rules.prior_odds):
+                             self.rules.prior_probability):
                     found.append(cause.effect)
         return tuple(found)
 

@@ -83,6 +83,7 @@ def posteriors(fitted: Sequence[Fitted], ranked: list, causes: Sequence[Candidat
     weights = {one.chosen: one.evidence - top.evidence for one in fitted}
     if base is not None and np.isfinite(base):
         for value, chosen, _ in ranked:
+            # With one candidate more, less, or in place of another: of others slopes say little.
             if chosen not in tried and len(set(chosen) ^ set(top.chosen)) <= 2:
                 weights[chosen] = min(value - base, rules.untried)
     values = np.array(list(weights.values()))
@@ -92,5 +93,5 @@ def posteriors(fitted: Sequence[Fitted], ranked: list, causes: Sequence[Candidat
     for share, chosen in zip(shares, weights, strict=True):
         for cause in effects_in(chosen):
             adds = cause not in best and best <= set(chosen)
-            found[cause] += float(share) * (rules.prior_odds if adds else 1.0)
+            found[cause] += float(share) * (rules.prior_of(cause.effect) if adds else 1.0)
     return found

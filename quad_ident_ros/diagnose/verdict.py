@@ -149,7 +149,8 @@ def _ranking(bench: Bench, judged: Judgement, causes: tuple, total: dict,
         if cause.effect in rows and weight is None:
             continue
         parameters, gap_after = {}, before
-        if weight is not None:
+        # A form that gave way to the usual one, which was taken out later, is in neither.
+        if weight is not None and errors.keys() >= {*cause.columns}:
             z = model.z if cause in model.effects else best.estimate.z
             units = {one.name: one.unit for one in EFFECTS[cause.effect].parameters}
             for column in cause.columns:

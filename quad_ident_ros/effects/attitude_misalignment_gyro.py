@@ -11,4 +11,4 @@ FORM = Form(
                      for name, axis in zip(('roll', 'pitch', 'yaw'), 'xyz', strict=True)),
     source='measured rate = inverse of tilt * rate: attitude from motion capture whose body is '
            'level, rates from an autopilot that is not',
-    acts_on='rotation', sensor='rate', on_rotors=False, needs_reference=True)
+    sensor='rate', on_rotors=False, needs_reference=True)

@@ -78,10 +78,9 @@ class Form:
     thrust(p, k, s, rotors): factors on the rotors' thrust and reaction torque;
     wrench(p, k, s, rotors): forces of the rotors, forces and moments on the body. actuator:
     'delay' or 'lag', where its parameters are those of the actuators; sensor: 'attitude' or 'rate'
-    or 'block' (both) or 'heading', where they are those of a sensor. acts_on: what it changes
-    first, translation (forces), rotation (moments and what is measured of the rate) or both;
-    on_rotors: it acts on rotors, so that a vehicle flown from U1..U4 needs some; needs_voltage: it
-    acts only where the voltage is recorded; without_voltage: it says something only where none is;
+    or 'block' (both) or 'heading', where they are those of a sensor; on_rotors: it acts on
+    rotors, so that a vehicle flown from U1..U4 needs some; needs_voltage: it acts only where the
+    voltage is recorded; without_voltage: it says something only where none is;
     apart: parameters that do what another effect does, each of them a term that errs by itself,
     for how wrong a law may be is no matter of names; needs_reference: it shows only against a
     position, a velocity or an attitude, not in accelerometer and gyro alone; needs_height: it
@@ -92,7 +91,6 @@ class Form:
     title: str
     parameters: tuple[Parameter, ...]
     source: str
-    acts_on: Literal['translation', 'rotation', 'both'] = 'both'
     body: Hook | None = field(default=None, repr=False)
     air: Hook | None = field(default=None, repr=False)
     gust: Hook | None = field(default=None, repr=False)

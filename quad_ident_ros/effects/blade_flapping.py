@@ -17,7 +17,6 @@ FORM = Form(
                           excited_by='horizontal'),),
     source='moment -c (speed / sum of hover speeds) v x z at each rotor; Pounds, Mahony, Corke, '
            'Control Engineering Practice 18, 2010',
-    acts_on='rotation',
     wrench=wrench, needs_reference=True)
 EFFECT = Effect(
     name='blade_flapping', title='blade flapping',

@@ -25,4 +25,4 @@ FORM = Form(
                           'mass, beyond the places of the rotors', excited_by='horizontal'),),
     source='moment arm z x drag, the drag being what the nominal vehicle, rotor_drag and '
            'body_drag give across body z; Bangura, Mahony, ACRA 2012',
-    acts_on='rotation', wrench=wrench, on_rotors=False)
+    wrench=wrench, on_rotors=False)

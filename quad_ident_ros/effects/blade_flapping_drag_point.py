@@ -28,4 +28,4 @@ FORM = Form(
     source='moment r x drag, the drag being what the nominal vehicle, rotor_drag and body_drag '
            'give, of the rotors that across body z; Hoerner, Fluid-Dynamic Drag, 1965: a body '
            'that is not symmetric has its centre of pressure off its middle',
-    acts_on='rotation', wrench=wrench, on_rotors=False)
+    wrench=wrench, on_rotors=False)

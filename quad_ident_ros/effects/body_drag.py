@@ -30,7 +30,7 @@ FORM = Form(
                           excited_by='vertical')),
     source='parasitic drag -c |v| v, half of air density times drag area; e.g. Hoerner, '
            'Fluid-Dynamic Drag, 1965',
-    acts_on='translation', on_rotors=False,
+    on_rotors=False,
     wrench=wrench, needs_reference=True)
 EFFECT = Effect(
     name='body_drag', title='drag of the body',

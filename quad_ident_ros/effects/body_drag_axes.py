@@ -27,4 +27,4 @@ FORM = Form(
                      for axis in 'xyz'),
     source='force -|v| (x vx, y vy, z vz): a body that is longer than wide; e.g. Hoerner, '
            'Fluid-Dynamic Drag, 1965',
-    acts_on='translation', wrench=wrench, on_rotors=False, needs_reference=True)
+    wrench=wrench, on_rotors=False, needs_reference=True)

@@ -21,7 +21,6 @@ FORM = Form(
     parameters=tuple(Parameter(axis, 'm', -1.0, 1.0, 0.05, f'of the centre of mass along body '
                                f'{axis}, from the declared body origin') for axis in 'xyz'),
     source='every lever arm counts from the centre of mass; the record is of the body origin',
-    acts_on='rotation',
     body=body)
 EFFECT = Effect(
     name='com_offset', title='offset of the centre of mass', forms=(FORM,),

@@ -31,7 +31,6 @@ FORM = Form(
                           '1 is the formula of Cheeseman and Bennett for one rotor'),),
     source='thrust / (1 - strength (R / 4z)^2), z the height of the rotor: Cheeseman and Bennett, '
            'ARC R&M 3021, 1955; strength above 1: Sanchez-Cuevas et al., 2017',
-    acts_on='translation',
     thrust=thrust, needs_height=True)
 EFFECT = Effect(
     name='ground_effect', title='ground effect',

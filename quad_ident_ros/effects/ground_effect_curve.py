@@ -38,4 +38,4 @@ FORM = Form(
            'radii and 0 from 8 radii on, z the height of the rotor: laws that were measured '
            'differ from vehicle to vehicle; Sanchez-Cuevas, Heredia, Ollero, International '
            'Journal of Aerospace Engineering 2017, 1823056',
-    acts_on='translation', thrust=thrust, needs_height=True)
+    thrust=thrust, needs_height=True)

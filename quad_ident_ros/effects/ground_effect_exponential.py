@@ -28,4 +28,4 @@ FORM = Form(
     source='thrust (1 + gain exp(-z / (length R))), z the height of the rotor: fitted to measured '
            'thrust by He and Leang, Journal of Dynamic Systems, Measurement, and Control 141(7), '
            '2019',
-    acts_on='translation', thrust=thrust, needs_height=True)
+    thrust=thrust, needs_height=True)

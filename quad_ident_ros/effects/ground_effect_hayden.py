@@ -27,4 +27,4 @@ FORM = Form(
     source='thrust (1 + hayden 0.038 (2R / z)^2)^(2/3), z the height of the rotor: power at '
            'constant thrust falls by A + B (2R / z)^2, thrust at constant power rises by its '
            '2/3rd power; Hayden, 32nd Annual Forum of the American Helicopter Society, 1976',
-    acts_on='translation', thrust=thrust, needs_height=True)
+    thrust=thrust, needs_height=True)

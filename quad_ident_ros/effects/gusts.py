@@ -34,7 +34,7 @@ FORM = Form(
                                f'{knot} of {KNOTS - 1} parts into the flight')
                      for axis in 'xy' for knot in range(KNOTS)),
     source='air velocity = velocity - steady wind - gust, in everything that depends on it',
-    acts_on='translation', on_rotors=False,
+    on_rotors=False,
     gust=gust, needs_reference=True)
 EFFECT = Effect(
     name='gusts', title='wind that changes along a flight', forms=(FORM,),

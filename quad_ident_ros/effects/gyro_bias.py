@@ -9,7 +9,7 @@ FORM = Form(
     parameters=tuple(Parameter(axis, 'rad/s', -1.0, 1.0, 0.02, f'of the rate about body {axis}')
                      for axis in 'xyz'),
     source='measured rate = rate + bias',
-    acts_on='rotation', on_rotors=False,
+    on_rotors=False,
     sensor='rate', needs_reference=True)
 EFFECT = Effect(
     name='gyro_bias', title='bias of the gyroscope', forms=(FORM,),

@@ -30,7 +30,7 @@ FORM = Form(
                                excited_by=turn, gain=-1)
                      for axis, turn in TURNS.items()),
     source='moments of inertia times factor, about each body axis; products of inertia stay',
-    acts_on='rotation', on_rotors=False,
+    on_rotors=False,
     body=body)
 EFFECT = Effect(
     name='inertia_mismatch', title='error in inertia',

@@ -39,5 +39,5 @@ FORM = Form(
                   'yaw')),
     source='moments of the rotors about each body axis, and moments of inertia about y and z, '
            'times factors: that about x is the measure',
-    acts_on='rotation', on_rotors=True,
+    on_rotors=True,
     body=body)

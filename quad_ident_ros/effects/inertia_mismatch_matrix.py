@@ -37,5 +37,5 @@ FORM = Form(
                   for axes, turn in PRODUCTS)),
     source="six numbers of a symmetric matrix; Euler's equations, Goldstein, Classical "
            'Mechanics, section 5.5',
-    acts_on='rotation', on_rotors=False,
+    on_rotors=False,
     body=body)

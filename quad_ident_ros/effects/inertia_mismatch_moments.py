@@ -28,5 +28,5 @@ FORM = Form(
                      for name, what, turn in FACTORS),
     source='moments of the rotors times a factor, about each body axis; apart from the reciprocal '
            'of a factor on the inertia it differs in the gyroscopic moment alone',
-    acts_on='rotation', on_rotors=True,
+    on_rotors=True,
     body=body)

@@ -18,7 +18,7 @@ FORM = Form(
     name='at_centre', title='at the centre of mass',
     parameters=(Parameter('mass', 'kg', -0.6, 3.0, 0.1, 'added to the nominal mass'),),
     source='nominal mass + mass: a payload at the centre of mass, without inertia of its own',
-    acts_on='translation', on_rotors=False,
+    on_rotors=False,
     body=body)
 EFFECT = Effect(
     name='mass_offset', title='error in mass', forms=(FORM,),

@@ -25,7 +25,6 @@ FORM = Form(
                           excited_by='horizontal'),),
     source='force -c (speed / sum of hover speeds) v at each rotor: blade drag and induced drag, '
            'Martin and Salaun, ICRA 2010; Kai et al., IFAC 2017; Faessler et al., RA-L 2018',
-    acts_on='translation',
     wrench=wrench, needs_reference=True)
 EFFECT = Effect(
     name='rotor_drag', title='drag of the rotors',

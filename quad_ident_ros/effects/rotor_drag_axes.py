@@ -26,4 +26,4 @@ FORM = Form(
     source='force -(x vx, y vy, z vz) on the body: linear drag of all rotors together, Faessler, '
            'Franchi, Scaramuzza, IEEE Robotics and Automation Letters 3(2), 2018; also a nominal '
            'linear_drag that is off, either way',
-    acts_on='translation', wrench=wrench, on_rotors=False, needs_reference=True)
+    wrench=wrench, on_rotors=False, needs_reference=True)

@@ -25,4 +25,4 @@ FORM = Form(
                      for axis in 'xyz'),
     source='force -(speed / sum of hover speeds) (x vx, y vy, z vz) at each rotor: the frame '
            'shadows the rotors unequally; Svacha, Mohta, Kumar, ICUAS 2017',
-    acts_on='translation', wrench=wrench, needs_reference=True)
+    wrench=wrench, needs_reference=True)

@@ -24,7 +24,6 @@ FORM = Form(
                           'of one rotor about its axis, with what turns with it'),),
     source='moment -w x h - dh/dt with h = -sum(spin J speed) along body z; eqs. (10), (11) of '
            'the paper with the sign of the errata',
-    acts_on='rotation',
     wrench=wrench)
 EFFECT = Effect(
     name='rotor_gyro', title='angular momentum of the rotors', forms=(FORM,),

@@ -26,7 +26,7 @@ FORM = Form(
                                f'velocity of the air along world {axis}')
                      for axis, size in SIZES.items()),
     source='air velocity = velocity - wind, in everything that depends on it',
-    acts_on='translation', on_rotors=False,
+    on_rotors=False,
     air=air, needs_reference=True)
 EFFECT = Effect(
     name='wind', title='steady wind', forms=(FORM,),

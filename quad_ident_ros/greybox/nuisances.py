@@ -28,7 +28,7 @@ LEVEL_TITLE = 'thrust relative to the level at which commands were scaled to car
 HEADING = 0.02      # rad, how far compasses usually differ from one flight to the next
 GUST = 1.0          # m/s, of light turbulence (MIL-F-8785C: a tenth of the wind at 20 feet)
 OFF_LEVEL = 0.1     # how far that usually is off: drag, wind, a battery that empties
-RARE, LIKELY = 1e-4, 0.5    # odds of flights having one, before looking
+RARE, LIKELY = 1e-4, 0.5    # probability that flights have one, before looking
 APART = 0.02        # s, how far clocks usually are apart where nothing shows it,
 REST = 0.001        # s, or
 REST_SHARE = 0.2    # periods, how far where they were put right
@@ -43,8 +43,9 @@ class Nuisance:
     """
     A kind of it.
 
-    name, what it is, unit, places in z and its usual spread from 0 there, SI; odds of flights
-    having it, before looking; of_effect: the name of the effect that differs by flight, or '';
+    name, what it is, unit, places in z and its usual spread from 0 there, SI; prior: probability
+    that flights have it, before looking; of_effect: the name of the effect that differs by flight,
+    or '';
     shared: the name of the effect that it is where flights have it alike, or ''; mean_shares,
     where it is the vehicle's then, though no one effect: of each place, how far from zero the
     mean over several flights may be, of a spread, and inf where it is free.
@@ -55,7 +56,7 @@ class Nuisance:
     unit: str
     columns: tuple[int, ...]
     spreads: tuple[float, ...]
-    odds: float
+    prior: float
     of_effect: str = ''
     shared: str = ''
     mean_shares: tuple[float, ...] = ()
@@ -83,16 +84,16 @@ def nuisances(vehicle: Vehicle, tracks: Sequence[Track], gusty: bool = False
     rate = tuple(f'gyro_bias.{axis}' for axis in 'xyz')
     tilt = tuple(f'attitude_misalignment.{axis}' for axis in ('roll', 'pitch', 'yaw'))
     moment = tuple(f'external_wrench.moment_{axis}' for axis in 'xyz')
-    apart, odds = APART, RARE
+    apart, prior = APART, RARE
     if put_right(tracks):
         apart = max(REST, REST_SHARE * max(track.clock.period for track in tracks if track.clock))
-        odds = LIKELY
+        prior = LIKELY
     kinds: list[tuple] = []
     # Inertial flights have one clock and no attitude, and slow moments count for little there.
     if not inertial(tracks):
         # Unless clocks are known, an offset that all flights share is a delay of the actuators.
         alike = '' if put_right(tracks) else 'actuation_delay'
-        kinds.append((CLOCK, CLOCK_TITLE, 's', ('actuation_delay.delay',), (apart,), odds, '',
+        kinds.append((CLOCK, CLOCK_TITLE, 's', ('actuation_delay.delay',), (apart,), prior, '',
                       alike))
         kinds += [('rate_bias', 'bias of the rate', 'rad/s', rate, (spread,) * 3, RARE, '',
                    'gyro_bias') for spread in (0.01, 0.003)]

@@ -9,7 +9,12 @@ from typing import TYPE_CHECKING
 from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 import numpy as np
 
-from quad_ident_ros.diagnose.residual_wrench import CHANNELS, ResidualWrench, weights
+from quad_ident_ros.diagnose.residual_wrench import (
+    CHANNELS,
+    ResidualWrench,
+    shared_features,
+    weights,
+)
 from quad_ident_ros.diagnose.result import Gap
 from quad_ident_ros.greybox.errors import GROUPS
 from quad_ident_ros.model.vehicle import Vehicle
@@ -105,7 +110,8 @@ def save_map(before: tuple[ResidualWrench, ...], after: tuple[ResidualWrench, ..
 
 def regimes(flights: tuple[ResidualWrench, ...]) -> list[str]:
     """Return the names of the features that vary in a flight, which the map has columns of."""
-    return [name for name, (_, values) in flights[0].features.items() if np.ptp(values) > 0]
+    return [name for name in shared_features(flights)
+            if np.ptp(flights[0].features[name][1]) > 0]
 
 
 def map_rows(flights: tuple[ResidualWrench, ...], names: list[str],

@@ -12,6 +12,7 @@ from quad_ident_ros.data.inertial import is_inertial, reckoned, with_position
 from quad_ident_ros.data.load import load_all
 from quad_ident_ros.data.quality.ground import airborne, resting
 from quad_ident_ros.data.record import FlightRecord
+from quad_ident_ros.diagnose.carried import carried
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.errors import InputError
@@ -110,6 +111,15 @@ def test_what_needs_a_reference_says_so():
         diagnose(lone, IRIS, effects=['wind'])
     with pytest.raises(InputError, match='neither position nor velocity.*diagnose'):
         fit(lone[:1], IRIS, ['mass'])
+
+
+def test_the_drag_of_the_file_does_not_act_beside_the_air_of_the_record():
+    """What a written vehicle explains is measured as the diagnosis is."""
+    records = [bare(flown(seed=seed, duration=6.0)) for seed in range(2)]
+    plain, dragged = (replace(IRIS, linear_drag=(drag, drag, drag)) for drag in (0.0, 0.5))
+    lagged = replace(plain, effects={'motor_lag': {'time_constant': 0.05}})
+    gaps = [carried(records, one, lagged, {}).gaps['nominal'] for one in (plain, dragged)]
+    assert gaps[0] == pytest.approx(gaps[1])
 
 
 def test_nothing_is_reckoned_over_a_gap():

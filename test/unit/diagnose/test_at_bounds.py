@@ -53,7 +53,7 @@ def test_an_effect_that_needs_values_no_vehicle_has_is_not_named():
     told = diagnose(flights, replace(VEHICLE, inertia=(ixx / 10.0, iyy / 10.0, izz)))
     row = next(row for row in told.ranking if row.effect == 'inertia_mismatch')
     assert 'inertia_mismatch' not in told.verdict and 'unknown' in told.verdict
-    assert row.probability == RULES.prior_odds
+    assert row.probability == RULES.prior_probability
     assert any(finding['code'] == 'at_bound' and 'not named' in finding['message']
                for finding in told.findings)
 

@@ -12,7 +12,7 @@ from quad_ident_ros.diagnose.evidence import beam, excludes, linear_evidence, oc
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.greybox.nuisances import LIKELY, Nuisance, RARE
 
-RULES = Rules(prior_odds=0.03)
+RULES = Rules(prior_probability=0.03)
 CAUSES = tuple(Candidate(name, name, (k,), share=share) for k, (name, share) in enumerate(
     (('motor_lag', 1.0), ('rotor_drag', 0.5), ('wind', 1.0))))
 ROWS = {cause: [k] for k, cause in enumerate(CAUSES)}

@@ -15,6 +15,7 @@ from quad_ident_ros.diagnose.gap import Ends, gap
 from quad_ident_ros.diagnose.intake import take_in
 from quad_ident_ros.diagnose.judgement import (
     _fewest,
+    _idle,
     _weight,
     beyond,
     clear,
@@ -22,6 +23,7 @@ from quad_ident_ros.diagnose.judgement import (
     form_error_beside,
     in_any_form,
     in_forms_of,
+    in_standard_errors,
     lost_shares,
     matters,
     pooled,
@@ -41,6 +43,12 @@ from quad_ident_ros.model.vehicle import load_vehicle
 
 GROUPS = ('position', 'velocity', 'attitude', 'rate')
 NOISE = {'position': 0.01, 'velocity': 0.04, 'attitude': 0.01, 'rate': 0.03}
+
+
+class Named(SimpleNamespace):
+    """A cause that is its own key."""
+
+    __hash__ = object.__hash__
 
 
 def of(**changes):
@@ -132,12 +140,21 @@ def test_what_is_known_apart_matters_whatever_the_error_of_form_of_others():
 def test_what_is_probable_and_some_standard_errors_from_none_is_clear(
         contribution, distance, expected):
     weight = Weight(contribution, 5.0, 0.9, {}, distance, relative=0.3)
-    assert clear([weight], distance, RULES) is expected
+    cause = Named(effect='wind')
+    assert clear({cause: weight}, distance, RULES) is expected
+
+
+def test_what_a_fleet_often_has_is_clear_sooner():
+    cause, weight = Named(effect='wind'), Weight(0.02, 5.0, 0.9, {}, 1.5, relative=0.3)
+    often = replace(RULES, priors={'wind': EffectPrior(0.95, {}, {}, None)})
+    assert not clear({cause: weight}, 3.5, RULES) and clear({cause: weight}, 3.5, often)
 
 
 def test_effects_that_cancel_are_not_clear_together():
     weight = Weight(1.0, 5.0, 0.9, {}, 50.0)
-    assert clear([weight], 50.0, RULES) and not clear([weight, weight], 1.0, RULES)
+    one, other = Named(effect='mass_offset'), Named(effect='thrust_scale')
+    assert clear({one: weight}, 50.0, RULES)
+    assert not clear({one: weight, other: weight}, 1.0, RULES)
 
 
 def test_an_effect_explains_what_it_does_in_the_group_where_it_does_most():
@@ -347,6 +364,25 @@ def test_what_flights_share_by_chance_is_their_own_where_no_effect_is_there():
         0.0, abs=0.05)
     assert [vector[column] for vector in gone.vectors] == pytest.approx([0.9, 0.9, -0.3], abs=0.1)
     assert gone.gap['velocity'] < removed.gap['velocity']
+
+
+@pytest.mark.parametrize(('alone', 'expected'), [(0.04, ['drag']), (0.5, [])])
+def test_what_loses_nothing_in_the_model_that_is_reported_does_not_matter(alone, expected):
+    """Beside effects that were taken out as improbable, it may have made up for them."""
+    drag, lag = (Named(effect=name) for name in ('drag', 'lag'))
+    bench = SimpleNamespace(
+        slopes=lambda _: None, rules=RULES, distance=lambda *_: 0.1,
+        without=lambda model, removed, _: SimpleNamespace(
+            gap=of(velocity=alone if removed == (drag,) else 0.5)))
+    model = SimpleNamespace(effects=(drag, lag), gap=of(velocity=0.04))
+    weights = dict.fromkeys((drag, lag), Weight(0.5, 5.0, 0.9, {}, 3.0))
+    idle = _idle(bench, model, (drag, lag), weights, of(velocity=0.8), NOISE)
+    assert [cause.effect for cause in idle] == expected
+
+
+def test_one_block_of_time_has_no_standard_error():
+    assert in_standard_errors(np.array([5.0])) == 0.0
+    assert in_standard_errors(np.array([1.0, 3.0])) == pytest.approx(4.0 / np.sqrt(2.0))
 
 
 @pytest.mark.parametrize(('drag', 'thrust', 'expected'), [

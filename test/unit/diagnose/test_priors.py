@@ -84,8 +84,9 @@ def test_the_log_odds_of_an_effect_rise_by_those_of_the_fleet():
         ratio = (present / (1 - present)) / (RULES.usual_presence / (1 - RULES.usual_presence))
         assert after / (1 - after) == pytest.approx(ratio * before / (1 - before))
     assert known.shift('wind') == 0.0
-    assert rules(wind=RULES.usual_presence).odds('wind') == pytest.approx(RULES.prior_odds)
-    assert RULES.odds('wind') == pytest.approx(RULES.prior_odds)
+    usual = rules(wind=RULES.usual_presence)
+    assert usual.prior_of('wind') == pytest.approx(RULES.prior_probability)
+    assert RULES.prior_of('wind') == pytest.approx(RULES.prior_probability)
 
 
 def test_the_error_of_form_is_that_of_the_fleet_where_it_is_known():

@@ -12,6 +12,7 @@ from quad_ident_ros.diagnose.residual_wrench import (
     regime,
     residual_wrench,
     ResidualWrench,
+    shared_features,
     shares,
 )
 from quad_ident_ros.diagnose.rules import RULES
@@ -131,3 +132,19 @@ def test_the_force_is_told_at_ten_samples_a_second():
     track = track_of(tenth, VEHICLE)
     found = residual_wrench(track, VEHICLE, nominal(VEHICLE), NOISE)
     assert np.isfinite(found.values).all() and np.isfinite(found.errors).all()
+
+
+def test_a_regime_is_one_that_all_flights_can_have():
+    """Where one flight has no height, as without a position, the others' is no regime."""
+    rng = np.random.default_rng(2)
+    height = np.linspace(0.2, 2.2, 200)
+    values = 1e-3 * rng.normal(size=(200, 6))
+    values[height < 0.7, 2] += 0.1
+    features = {'speed': ('m/s', rng.uniform(0.0, 1.0, 200)), 'height': ('m', height)}
+    low, unknown = (ResidualWrench(values, np.full((200, 6), 1e-3), 0.05 * np.arange(200), some,
+                                   np.zeros(200, int))
+                    for some in (features, {'speed': features['speed']}))
+    assert regime((low,), 'Fz', RULES.regime)[0].startswith('height')
+    for flights in ((low, unknown), (unknown, low)):
+        assert shared_features(flights) == ['speed']
+        assert not regime(flights, 'Fz', RULES.regime)[0].startswith('height')

@@ -159,7 +159,8 @@ def test_an_effect_beside_the_simplest_of_sets_that_are_alike_is_as_rare_as_befo
             for causes, value in (((one,), 0.0), ((one, other), 2.0))]
     found = posteriors(sets, [], (one, other), set(), RULES)
     assert found[one] == pytest.approx(1.0)
-    assert found[other] == pytest.approx(RULES.prior_odds * np.exp(2.0) / (1.0 + np.exp(2.0)))
+    share = np.exp(2.0) / (1.0 + np.exp(2.0))
+    assert found[other] == pytest.approx(RULES.prior_probability * share)
 
 
 def shared_by_flights(vehicle, nuisance, effect, offsets):

@@ -61,3 +61,29 @@ def test_of_columns_that_are_missing_it_is_said_what_would_do(flight, gone, inst
                if name not in gone and not name.startswith('rotor')}
     with pytest.raises(InputError, match=f'has no column {", ".join(gone)}; .*{instead}'):
         diagnose([replace(flight, columns=columns)], VEHICLE)
+
+
+def test_a_lossy_flight_held_out_has_the_horizons_that_its_stretches_allow(flight):
+    """Rows are lost every 1.1 s: no stretch is as long as 1 s and its margin."""
+    since = (flight.t - flight.t[0]) % 1.1
+    lossy = replace(flight, t=flight.t[since > 0.12], columns={
+        name: values[since > 0.12] for name, values in flight.columns.items()})
+    found = diagnose([flight], VEHICLE, hold_out=lossy, effects=['rotor_drag', 'mass_offset'])
+    assert 'rotor_drag' in found.verdict
+    assert {'0.1', '0.5'} <= found.gap.horizons.keys() and '1.0' not in found.gap.horizons
+
+
+def test_a_flight_held_out_that_is_among_the_others_is_listed_once(flight):
+    other = fly_closed_loop(VEHICLE, {}, 'lissajous', duration=6.0, seed=2, noise=MOCAP_IMU)
+    found = diagnose([other, flight], VEHICLE, hold_out=flight, effects=['rotor_drag'])
+    assert [one.flight for one in found.recorded] == [other.info['name'], flight.info['name']]
+
+
+def test_flights_with_and_without_a_position_make_one_diagnosis(flight):
+    without = replace(flight, columns={name: values for name, values in flight.columns.items()
+                                       if name not in ('px', 'py', 'pz')}, info={'name': 'other'})
+    other = fly_closed_loop(VEHICLE, {'rotor_drag': {'coefficient': 0.3}}, 'lissajous',
+                            duration=8.0, seed=3, noise=MOCAP_IMU)
+    for records in ([other, without], [without, other]):
+        found = diagnose(records, VEHICLE, effects=['rotor_drag'])
+        assert found.verdict == ('rotor_drag',)
