@@ -41,10 +41,12 @@ def effects_of_unknown_form(bench: Bench, judged: Judgement, remains: Sequence[U
     of its laws only push. Of several effects the one that it is most clearly so for, before all of
     those that matter there; none where it is for none. The share is the least of the groups where
     it does, or else that of the group in which the effect does most.
-    Args: remains: the channels in which something does; wrenches: what the model does not
+    Args: remains: the channels in which something does, of which forces count, if any are among
+    them, or else moments; wrenches: what the model does not
     explain of each flight learnt from, and noise (12,): that of their states.
     """
-    columns = [CHANNELS.index(row.channel) for row in remains]
+    forces = [row for row in remains if row.channel[0] == 'F']
+    columns = [CHANNELS.index(row.channel) for row in forces or remains]
     if not columns or judged.stand_ins:
         return {}
     values, errors = (np.concatenate([getattr(one, name)[:, columns] for one in wrenches])

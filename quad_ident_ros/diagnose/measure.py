@@ -94,10 +94,8 @@ def channels(found: tuple[ResidualWrench, ...], vehicle: Vehicle, rules: Rules
 
 def unexplained(groups: Sequence[str], after: tuple[Channel, ...]) -> tuple[Unexplained, ...]:
     """Return the channels of what remains in groups of outputs, the largest share first."""
-    if not groups:
-        return ()
-    moments = not set(groups) & set(TRANSLATION)
-    rows = [row for row in after if row.channel[0] == ('M' if moments else 'F')]
+    kinds = {'F' if group in TRANSLATION else 'M' for group in groups}
+    rows = [row for row in after if row.channel[0] in kinds]
     rows = [row for row in rows if row.rms > row.noise_rms] or rows
     return tuple(Unexplained(row.channel, row.regime, row.share_in_regime, row.band,
                              float(np.sqrt(max(0.0, row.rms ** 2 - row.noise_rms ** 2))),

@@ -111,3 +111,9 @@ def test_it_travels_as_data(across):
     data = json.loads(json.dumps(across.as_data()))
     assert data['form_unknown'] == ['rotor_drag'] and data['verdict'] == ['rotor_drag']
     assert diagnosis_from(data, NOMINAL).form_unknown == across.form_unknown
+
+
+def test_of_a_force_and_a_moment_that_nothing_explains_both_are_told():
+    found = found_of(both(HIGH, TURNING))
+    assert found.verdict[-1] == 'unknown'
+    assert {row.channel[0] for row in found.unknown} == {'F', 'M'}
