@@ -326,7 +326,8 @@ class Bench:
                          if column in known else 0.0 for column in model.estimate.columns])
 
     def taken_out(self, model: Model) -> list[int]:
-        """Return the columns of the best set's effects that a Model has not, but one tied to."""
+        """Return the columns of the best set's effects to which some effect in a Model is tied."""
+        # Of those that the Model itself does not have.
         best, there = self.selection.best, {*model.effects}
         return sorted(column for cause in best.causes if cause not in there
                       and any(tie(best.estimate, cause, other) > self.rules.tied

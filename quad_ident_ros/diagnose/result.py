@@ -226,7 +226,7 @@ class Diagnosis:
 
     verdict: what matters, the largest contribution first, or none, unknown, undetermined; minor:
     what is present and does not matter; unknown: where something remains that matters;
-    form_unknown: the effect, if any, as whose error of form it is explained; z (Z,): the
+    form_unknown: the effect, if any, whose error of form may explain it; z (Z,): the
     parameter vector with the effects named; covariance: how well their parameters are known
     together, with the constants whose deviations the vehicle file states, or None where there are
     none; residual: the function of state and command that reaches the ceiling, None where effects

@@ -70,9 +70,9 @@ class Rules:
       form_time: s over which that error stays the same: that of a turn or a stop of a flight.
     Vehicle file:
       constant_error: how far a constant is usually off whose file states no deviation, as a share:
-        a pendulum, a ruler and a thrust stand leave some percent open. Of mass and thrust, which
-        are what the others show beside, none counts. drag_error: that of a drag: published ones
-        of one vehicle differ by some tens of percent.
+        a pendulum, a ruler and a thrust stand leave some percent open. Mass and thrust do not
+        count: motion shows the other constants only in proportion to them. drag_error: that of
+        a drag: published ones of one vehicle differ by some tens of percent.
     Probability:
       calibration: constant, and weights of the share that the form explains, of the logarithm of
         one plus the standard errors from no effect, of that logarithm times one minus the size

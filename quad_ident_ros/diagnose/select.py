@@ -45,10 +45,11 @@ from quad_ident_ros.model.vehicle import Vehicle
 # How long and how far the search goes; the thresholds of a verdict are those of Rules.
 ROUNDS = 6
 KEPT = 10           # fitted sets that are judged again around each new best one
-FAR = 31.0          # log evidence behind the best one up to which a set that has other delays or
+FAR = 30.0          # log evidence behind the best one up to which a set that has other delays or
                     # lags is judged around itself: three times what slopes around a delay of 20 ms
                     # are wrong by for a lag (9: test_selection.py, -k linearised), and `alike`
 TURNS = 2           # times that flights are linearised again for delays and lags of the best set
+REFITTED = 2        # times that the largest set is fitted, each by the noise of the fit before
 PASSES = 3          # times, at most, in each stage, that the noise is estimated again
 ONCE = 0.8          # share of the progress for the first search: a second one is rare
 LOST = 4.0          # times the scatter that a fit may cost more than a subset does
@@ -157,7 +158,7 @@ class _Search:
         z[late] += size[late]
         fit = self.best.estimate
         noise = [quick_noise(raw) for raw in fit.quiet]
-        for _ in range(TURNS):
+        for _ in range(REFITTED):
             fit = refitted(self.flights, self.vehicle, z, chosen, noise, fit.nuisances,
                            fit.starts, slow=self.slow)
             z, noise = fit.z, self.whole_noise(fit)

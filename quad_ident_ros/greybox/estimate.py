@@ -47,8 +47,8 @@ class Estimate:
 
     nuisances: those of the flights; starts: initial states per flight; normal: the last
     Normal, of the columns and of all nuisances, by slopes at the vector `at` (Z,), near z;
-    residuals: recorded minus predicted per flight, less what the clock explains; quiet: these
-    without what a slow force and moment make; cost: theirs;
+    residuals: recorded minus predicted per flight, less what the clock explains; quiet: the
+    residuals less what a slow force and moment make; cost: that of `quiet`;
     free: whether each column is inside its bounds; converged: whether the last step was small.
     """
 
