@@ -28,9 +28,9 @@ class Judgement:
     would, but have most of their parameters at bounds or untold; fitted: the same model with the
     gusts of each flight in its vectors, which `model` and `without` leave out; untold {column:
     (least, most)}: what errors of the commands may have made; weights {candidate: Weight} and
-    probability {effect: of being present}; without {candidate: Model without it}; before: the Ends of the nominal vehicle with the nuisances of each flight; left_out: those of
-    each flight by the fitted model of the others; noises: the Noise of each flight, noise: its
-    {group: gap};
+    probability {effect: of being present}; without {candidate: Model without it}; before: the
+    Ends of the nominal vehicle with the nuisances of each flight; left_out: those of each flight
+    by the fitted model of the others; noises: the Noise of each flight, noise: its {group: gap};
     remaining: {group: gap beyond tolerance}; unexplained: those of them beyond the error of form
     that the effects named may have.
     """
