@@ -28,14 +28,12 @@ def beside_gusts(bench: Bench, judged: Judgement, intake: Intake, causes: tuple[
     """
     Return a Bench and its Judgement, with gusts where a force is unexplained that these may be.
 
-    The search goes on from the best set with gusts among the nuisances. Where its best set has
-    none, all stays as it is. Where the force of the air is taken from the records, no gusts act.
+    The whole search is repeated with gusts among the nuisances. Where its best set has none, all
+    stays as it is. Where the force of the air is taken from the records, no gusts act.
     """
     if inertial(intake.flights) or not {*judged.unexplained} & {*TRANSLATION}:
         return bench, judged
-    best = bench.selection.best
-    selection = select(intake.flights, bench.vehicle, causes, bench.rules, on_progress, True,
-                       (best.chosen, best.estimate))
+    selection = select(intake.flights, bench.vehicle, causes, bench.rules, on_progress, gusty=True)
     if not any(cause.effect == GUSTS.name for cause in selection.best.chosen):
         return bench, judged
     beside = replace(bench, selection=selection, noise=noise_of(selection, intake, bench.rules))

@@ -118,13 +118,11 @@ def judge(bench: Bench) -> Judgement:
         final = bench.beside(model, small, full.z) if small else model
         improbable = in_any_form(final.effects, absent)
         final = bench.absent(final, improbable) if improbable else final
-    if improbable:
-        # What did something only beside effects that are not there does nothing without them.
-        idle_here = _idle(bench, final, material, weights, before, noise)
-        if idle_here:
-            final = bench.absent(final, in_any_form(final.effects, idle_here))
-            material = tuple(cause for cause in material if cause not in idle_here)
-            present |= {cause.effect: rules.prior_of(cause.effect) for cause in idle_here}
+    # What did something only beside effects that are not there does nothing without them.
+    while improbable and (gone := _idle(bench, final, material, weights, before, noise)):
+        final = bench.absent(final, in_any_form(final.effects, (gone,)))
+        material = tuple(cause for cause in material if cause is not gone)
+        present[gone.effect] = rules.prior_of(gone.effect)
     fitted, final = final, bench.without_gusts(final)
     without = {cause: bench.without_gusts(one) for cause, one in without.items()}
     ends = _nominal_ends(bench, final)
@@ -139,16 +137,16 @@ def judge(bench: Bench) -> Judgement:
 
 
 def _idle(bench: Bench, model: Model, causes: tuple, weights: dict, before: dict, noise: dict
-          ) -> tuple:
-    """Return those of some effects that do not matter in a Model, whatever form it has them in."""
-    slopes, rules, found = bench.slopes(model), bench.rules, []
+          ) -> Candidate | None:
+    """Return the least likely one of some effects that do not matter in a Model, if any."""
+    slopes, rules, costs = bench.slopes(model), bench.rules, {}
     for cause, here in zip(causes, in_forms_of(model.effects, causes), strict=True):
         without = bench.without(model, (here,), slopes)
         apart = clear({cause: weights[cause]}, bench.distance(model, (here,)), rules)
         if not matters(model.gap, without.gap, before, noise, rules, apart,
                        form_error_beside(model.effects, (here,), rules)):
-            found.append(cause)
-    return tuple(found)
+            costs[cause] = without.estimate.cost
+    return min(costs, key=lambda cause: costs[cause], default=None)
 
 
 def in_forms_of(effects: Iterable[Candidate], causes: Iterable[Candidate]

@@ -57,22 +57,20 @@ LOST = 4.0          # times the scatter that a fit may cost more than a subset d
 
 def select(flights: list[Flight], vehicle: Vehicle, causes: tuple[Candidate, ...],
            rules: Rules, on_progress: Callable[[float], None] = lambda share: None,
-           gusty: bool = False, start: tuple[tuple, Estimate] | None = None
-           ) -> Selection:
+           gusty: bool = False) -> Selection:
     """
     Return the Selection among candidate effects for flights of a vehicle.
 
     The errors are weighed by the noise from sample to sample. Where the residuals are much larger,
     by autocorrelated noise or by what no effect explains, their own size is the weight, until
-    the two agree. start: a set and its Estimate with which to begin, by default none: the nominal
-    vehicle. A moment that the best set has by flight although all flights have it alike is
+    the two agree. A moment that the best set has by flight although all flights have it alike is
     the vehicle's: the search is repeated with moments that only differ.
     """
-    search = _searched(_Search(flights, vehicle, causes, rules, (), gusty, start),
+    search = _searched(_Search(flights, vehicle, causes, rules, gusty=gusty),
                        lambda share: on_progress(ONCE * share))
     if inertial(flights) and search.too_wide((largest := search.largest())[1]):
         # What the nominal vehicle leaves, with which the search began, hid the effects as noise.
-        search = _searched(_Search(flights, vehicle, causes, rules, (), gusty, largest),
+        search = _searched(_Search(flights, vehicle, causes, rules, start=largest),
                            lambda share: on_progress(ONCE))
     alike = search.alike_in_nuisances()
     if alike:
@@ -122,11 +120,12 @@ class _Search:
         self.flights, self.vehicle, self.rules = flights, vehicle, rules
         self.all_causes = causes
         self.nuisances = nuisance_candidates(vehicle, flights, differ, gusty)
-        starts = [flight.states[flight.first] for flight in flights]
-        self.noise = [quick_noise(errors_along(flight, vehicle, nominal(vehicle), start))
-                      for flight, start in zip(flights, starts, strict=True)]
+        self.noise = [quick_noise(errors_along(flight, vehicle, nominal(vehicle),
+                                               flight.states[flight.first]))
+                      for flight in flights]
         self.slow: np.ndarray | None = None
-        self.tried, self.first = {}, ()
+        self.tried = {}
+        self.first: tuple = ()
         if inertial(flights):
             # Integrals change little from sample to sample, whatever their errors are.
             self.slow = trim_wrench(vehicle)
