@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from quad_ident_ros.diagnose import fly_next as design
-from quad_ident_ros.diagnose.candidates import not_told, SCALES
+from quad_ident_ros.diagnose.candidates import SCALES, unobservable
 from quad_ident_ros.diagnose.fitted import columns_at_bounds
 from quad_ident_ros.diagnose.judgement import Judgement
 from quad_ident_ros.diagnose.rules import Rules
@@ -32,11 +32,11 @@ def not_shown(selection: Selection, causes: tuple, verdict: Verdict, rules: Rule
 
 def cannot_show(flights: Sequence[Flight], verdict: Verdict) -> tuple[str, ...]:
     """Return the names of effects that no flights with commands like these would show."""
-    named, untold = {*verdict.sure, *verdict.undetermined}, not_told(flights)
+    named, hidden = {*verdict.sure, *verdict.undetermined}, unobservable(flights)
     if not any(flight.levelled for flight in flights):
-        return untold
+        return hidden
     scales = {NAMES[column].partition('.')[0] for column in SCALES}
-    return (*untold, *(name for name in EFFECTS if name in scales - named))
+    return (*hidden, *(name for name in EFFECTS if name in scales - named))
 
 
 def fly_next(selection: Selection, flights: list, vehicle: Vehicle, z: np.ndarray,
@@ -72,7 +72,8 @@ def by_input_errors(judged: Judgement) -> tuple[dict, ...]:
     rows = []
     for cause in judged.model.effects:
         ranges = [f'{NAMES[column].split(".")[1]} {least:.2g} to {most:.2g}'
-                  for column, (least, most) in judged.untold.items() if column in cause.columns]
+                  for column, (least, most) in judged.command_errors.items()
+                  if column in cause.columns]
         so = '; it stays in the model in its place and is not named'
         if ranges:
             rows.append({
@@ -106,7 +107,7 @@ def one_finding(verdict: Verdict, flights: Sequence[Flight]) -> tuple[dict, ...]
             *((form, [effect.name]) for form in effect.forms
               if form.name == forms.get(effect.name))]
         rows += [{'effect': effect.name, 'may_be': [list(pair) for pair in one.same_motion],
-                  'effects': effects, 'tells': one.told_by}
+                  'effects': effects, 'tells': one.separated_by}
                  for one, effects in known if one.same_motion]
     late = sorted(name for name, effect in EFFECTS.items() if effect.actuator)
     slow = 1.0 / max(flight.period for flight in flights) < RATE / 2

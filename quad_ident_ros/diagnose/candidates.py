@@ -104,7 +104,7 @@ def _known_first(effect: Effect, vehicle: Vehicle) -> list[Form]:
                                                          for parameter in form.parameters))
 
 
-def not_told(flights: Sequence[Flight]) -> tuple[str, ...]:
+def unobservable(flights: Sequence[Flight]) -> tuple[str, ...]:
     """Return the names of the effects of which such flights show no form."""
     return tuple(name for name, effect in EFFECTS.items()
                  if inertial(flights) and all(form.needs_reference for form in effect.forms)

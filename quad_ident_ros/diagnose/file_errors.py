@@ -17,7 +17,8 @@ from quad_ident_ros.diagnose.frame import frame_at, normal_at
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.greybox.estimate import Estimate
 from quad_ident_ros.greybox.flights import Flight
-from quad_ident_ros.greybox.normal import covariance_of, first_of, marginal, Normal, scatter_of
+from quad_ident_ros.greybox.known_together import with_constants
+from quad_ident_ros.greybox.normal import marginal
 from quad_ident_ros.greybox.nuisances import Layout
 from quad_ident_ros.greybox.parameters import constants_behind, INDEX, limits
 from quad_ident_ros.model.vehicle import Vehicle
@@ -44,32 +45,3 @@ def errors_by_file(chosen: tuple, fit: Estimate, flights: Sequence[Flight], vehi
     shared = marginal(normal, len(columns), precision)
     held, whole = with_constants(shared, np.array(list(behind.values())), size)
     return np.sqrt(np.maximum(np.diag(whole)[:count] - np.diag(held), 0.0))
-
-
-def with_constants(normal: Normal, deviations: np.ndarray, size: np.ndarray
-                   ) -> tuple[np.ndarray, np.ndarray]:
-    """
-    Return the covariances of columns, (C, C), and of these and constants, (C + K, C + K).
-
-    Of the columns with the constants held, and of all with constants known to deviations (K,).
-    Where flights would rather have other constants, that distance counts as an error: the vehicle
-    that is named has those of the file. Args: normal, size (C + K,): of all.
-    """
-    count = len(size) - len(deviations)
-    # One scatter for all, the largest: what scales the whole motion stays in proportion.
-    widest = float(scatter_of(normal).max())
-    information, gradient = normal.information / widest, normal.gradient / widest
-    white = Normal(information, gradient, normal.cost, normal.scores[:0])
-    held = covariance_of(first_of(white, count), size[:count])
-    # The columns follow the constants, of which flights show what the columns do not take up. In
-    # units of the deviations: beside a tiny one no other number would be told apart from zero.
-    moved = -held @ information[:count, count:]
-    shown = information[count:, count:] + information[count:, :count] @ moved
-    units = np.outer(deviations, deviations)
-    known = units * np.linalg.inv(shown * units + np.eye(len(deviations)))
-    shift = known @ (gradient[count:] + moved.T @ gradient[:count])
-    known = known + np.outer(shift, shift)
-    follow = np.vstack([moved, np.eye(len(deviations))])
-    whole = follow @ known @ follow.T
-    whole[:count, :count] += held
-    return held, whole

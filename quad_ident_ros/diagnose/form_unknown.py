@@ -66,7 +66,7 @@ def effects_of_unknown_form(bench: Bench, judged: Judgement, remains: Sequence[U
     if not clear:
         return {}
     best = max(clear, key=lambda cause: (acts_there[cause], likelier[cause]))
-    share = min(_explained_there(bench, judged, best), default=judged.weights[best].explained)
+    share = min(_explained_there(bench, judged, best), default=judged.supports[best].explained)
     return {best.effect: share}
 
 

@@ -12,7 +12,7 @@ from quad_ident_ros.diagnose import gap as gaps
 from quad_ident_ros.diagnose.bench import Bench, Model, tie
 from quad_ident_ros.diagnose.candidates import Candidate
 from quad_ident_ros.diagnose.gap import Noise
-from quad_ident_ros.diagnose.probability import beside_others, presence, probabilities, Weight
+from quad_ident_ros.diagnose.probability import beside_others, presence, probabilities, Support
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.greybox.errors import ERRORS, GROUPS
@@ -25,9 +25,10 @@ class Judgement:
     What was judged of a Selection.
 
     model: all effects that are present; material: those of them that matter; stand_ins: those that
-    would, but have most of their parameters at bounds or untold; fitted: the same model with the
-    gusts of each flight in its vectors, which `model` and `without` leave out; untold {column:
-    (least, most)}: what errors of the commands may have made; weights {candidate: Weight} and
+    would, but have most of their parameters at bounds or in command_errors; fitted: the same model
+    with the gusts of each flight in its vectors, which `model` and `without` leave out;
+    command_errors {column: (least, most)}: what errors of the commands may have made; supports
+    {candidate: Support} and
     probability {effect: of being present}; without {candidate: Model without it}; before: the
     Ends of the nominal vehicle with the nuisances of each flight; left_out: those of each flight
     by the fitted model of the others; noises: the Noise of each flight, noise: its {group: gap};
@@ -39,8 +40,8 @@ class Judgement:
     material: tuple
     stand_ins: tuple
     fitted: Model
-    untold: dict[int, tuple[float, float]]
-    weights: dict
+    command_errors: dict[int, tuple[float, float]]
+    supports: dict
     probability: dict
     without: dict
     before: tuple
@@ -68,7 +69,7 @@ def judge(bench: Bench) -> Judgement:
     noises = bench.noises(full)
     noise_gaps = bench.noise_gaps(full, noises)
     before, noise = gaps.gap(_nominal_ends(bench, full)), pooled(noise_gaps)
-    weights: dict[Candidate, Weight] = {}
+    supports: dict[Candidate, Support] = {}
     without: dict[Candidate, Model] = {}
     while model.effects:
         slopes = bench.slopes(model)
@@ -76,15 +77,15 @@ def judge(bench: Bench) -> Judgement:
                    for removed in _subsets(model, rules)}
         alone = {removed[0]: one for removed, one in smaller.items() if len(removed) == 1}
         without |= alone
-        for cause, weight in beside_others(
-                {cause: _weight(model, one, before, noise, bench.distance(model, (cause,)), rules)
+        for cause, support in beside_others(
+                {cause: _support(model, one, before, noise, bench.distance(model, (cause,)), rules)
                  for cause, one in alone.items()}, rules).items():
             # Beside effects that do not matter it may show more clearly, or less.
-            weights[cause] = max(weights.get(cause, weight), weight,
+            supports[cause] = max(supports.get(cause, support), support,
                                  key=lambda each: presence(each, rules))
         idle = [removed for removed, one in smaller.items()
                 if not matters(model.gap, one.gap, before, noise, rules,
-                               clear({cause: weights[cause] for cause in removed},
+                               clear({cause: supports[cause] for cause in removed},
                                      bench.distance(model, removed), rules),
                                form_error_beside(model.effects, removed, rules))]
         if not idle:
@@ -94,17 +95,17 @@ def judge(bench: Bench) -> Judgement:
         model = smaller[first]
     # Where forms gave way to the usual ones, these stand for their effects.
     there = {cause.effect: cause for cause in (*full.effects, *model.effects)}
-    weights = {cause: weight for cause, weight in weights.items()
+    supports = {cause: support for cause, support in supports.items()
                if there.get(cause.effect) is cause}
-    present = probabilities(bench.selection.posterior, weights, rules)
+    present = probabilities(bench.selection.posterior, supports, rules)
     absent = tuple(cause for cause in there.values() if present[cause.effect] < rules.present)
     if set(model.effects) <= set(absent) and closes_half(model.gap, before, noise, rules):
         model = _fewest(bench, model, before, noise, present)
         absent = tuple(cause for cause in absent if cause not in model.effects)
     # What needs values that no vehicle has does the work of something else, which it stands for.
-    untold = bench.untold(model)
+    command_errors = bench.command_errors(model)
     stand_ins = tuple(cause for cause in model.effects
-                      if cause not in absent and bench.stands_in(model, cause, untold))
+                      if cause not in absent and bench.stands_in(model, cause, command_errors))
     present |= {cause.effect: rules.prior_of(cause.effect) for cause in stand_ins}
     material = tuple(cause for cause in model.effects if cause not in {*absent, *stand_ins})
     if set(model.effects) <= set(full.effects):
@@ -119,7 +120,7 @@ def judge(bench: Bench) -> Judgement:
         improbable = in_any_form(final.effects, absent)
         final = bench.absent(final, improbable) if improbable else final
     # What did something only beside effects that are not there does nothing without them.
-    while improbable and (gone := _idle(bench, final, material, weights, before, noise)):
+    while improbable and (gone := _idle(bench, final, material, supports, before, noise)):
         final = bench.absent(final, in_any_form(final.effects, (gone,)))
         material = tuple(cause for cause in material if cause is not gone)
         present[gone.effect] = rules.prior_of(gone.effect)
@@ -127,22 +128,25 @@ def judge(bench: Bench) -> Judgement:
     without = {cause: bench.without_gusts(one) for cause, one in without.items()}
     ends = _nominal_ends(bench, final)
     return Judgement(final, in_forms_of(final.effects, material),
-                     in_forms_of(final.effects, stand_ins), fitted, untold,
-                     dict(zip(in_forms_of(final.effects, weights), weights.values(), strict=True)),
-                     present,
-                     dict(zip(in_forms_of(final.effects, without), without.values(), strict=True)),
+                     in_forms_of(final.effects, stand_ins), fitted, command_errors,
+                     _by_form(final, supports), present, _by_form(final, without),
                      ends, bench.left_out(fitted), noises, noise_gaps,
                      remaining(final.gap, noise, rules),
                      unexplained(final.gap, gaps.gap(ends), noise, bool(material), rules))
 
 
-def _idle(bench: Bench, model: Model, causes: tuple, weights: dict, before: dict, noise: dict
+def _by_form(model: Model, values: dict) -> dict:
+    """Return {candidate: value} by the candidates of a Model, which may have other forms."""
+    return dict(zip(in_forms_of(model.effects, values), values.values(), strict=True))
+
+
+def _idle(bench: Bench, model: Model, causes: tuple, supports: dict, before: dict, noise: dict
           ) -> Candidate | None:
     """Return the least likely one of some effects that do not matter in a Model, if any."""
     slopes, rules, costs = bench.slopes(model), bench.rules, {}
     for cause, here in zip(causes, in_forms_of(model.effects, causes), strict=True):
         without = bench.without(model, (here,), slopes)
-        apart = clear({cause: weights[cause]}, bench.distance(model, (here,)), rules)
+        apart = clear({cause: supports[cause]}, bench.distance(model, (here,)), rules)
         if not matters(model.gap, without.gap, before, noise, rules, apart,
                        form_error_beside(model.effects, (here,), rules)):
             costs[cause] = without.estimate.cost
@@ -173,16 +177,16 @@ def _nominal_ends(bench: Bench, model: Model) -> tuple:
     return bench.ends(tuple(null + vector - model.z for vector in model.vectors))
 
 
-def _weight(model: Model, without: Model, before: dict, noise: dict, distance: float,
-            rules: Rules) -> Weight:
-    """Return the Weight of what a Model has more than another, so far from no effect."""
+def _support(model: Model, without: Model, before: dict, noise: dict, distance: float,
+             rules: Rules) -> Support:
+    """Return the Support of what a Model has more than another, so far from no effect."""
     shares = lost_shares(model.gap, without.gap, before, noise, rules)
     explained = {name: explained_share(model.gap[name], without.gap[name], noise[name],
                                        rules.least(name, noise[name])) for name in shares}
     # Where it does most: a small share of one group may be all that is explained in another.
     name = max(shares, key=lambda group: shares[group] * explained[group])
-    return Weight(max(shares.values()), stability(model.ends, without.ends, noise, rules),
-                  explained[name], without.gap, distance)
+    return Support(max(shares.values()), stability(model.ends, without.ends, noise, rules),
+                   explained[name], without.gap, distance)
 
 
 def explained_share(after: float, without: float, noise: float, least: float) -> float:
@@ -288,7 +292,7 @@ def _fewest(bench: Bench, model: Model, before: dict, noise: dict, present: dict
     return model
 
 
-def clear(weights: dict[Candidate, Weight], distance: float, rules: Rules) -> bool:
+def clear(supports: dict[Candidate, Support], distance: float, rules: Rules) -> bool:
     """
     Return whether effects, at least one of them probable, together clearly differ from none.
 
@@ -296,8 +300,8 @@ def clear(weights: dict[Candidate, Weight], distance: float, rules: Rules) -> bo
     have these in them. Effects that cancel one another are together near none.
     """
     return distance >= rules.shown and any(
-        presence(weight, rules, rules.shift(cause.effect)) >= rules.present
-        for cause, weight in weights.items())
+        presence(support, rules, rules.shift(cause.effect)) >= rules.present
+        for cause, support in supports.items())
 
 
 def remaining(gap: dict, noise: dict, rules: Rules) -> dict:

@@ -11,7 +11,7 @@ from quad_ident_ros.diagnose.rules import Rules
 
 
 @dataclass(frozen=True)
-class Weight:
+class Support:
     """
     What an effect weighs, by what is lost when it is taken out and everything else is refitted.
 
@@ -31,20 +31,20 @@ class Weight:
     companions: int = 0
 
 
-def beside_others(weights: dict, rules: Rules) -> dict:
+def beside_others(supports: dict, rules: Rules) -> dict:
     """
-    Return {candidate: Weight} of the effects of one model, each with what the others contribute.
+    Return {candidate: Support} of the effects of one model, each with what the others contribute.
 
     How likely an effect is before looking at it shows in the number of others present (Scott and
     Berger, Annals of Statistics 38, 2010).
     """
     contribution, steadiness = rules.companion
-    clear = {cause for cause, one in weights.items()
+    clear = {cause for cause, one in supports.items()
              if one.contribution >= contribution and one.stability >= steadiness}
-    most = max((one.contribution for one in weights.values()), default=0.0)
+    most = max((one.contribution for one in supports.values()), default=0.0)
     return {cause: replace(one, companions=len(clear - {cause}),
                            relative=relative_size(one.contribution, most))
-            for cause, one in weights.items()}
+            for cause, one in supports.items()}
 
 
 def relative_size(contribution: float, most: float) -> float:
@@ -57,17 +57,17 @@ def relative_size(contribution: float, most: float) -> float:
     return 1.0 if contribution >= most else float(np.sqrt(max(contribution, 0.0) / most))
 
 
-def probabilities(posterior: dict, weights: dict, rules: Rules) -> dict[str, float]:
+def probabilities(posterior: dict, supports: dict, rules: Rules) -> dict[str, float]:
     """
     Return {effect: probability of being present}.
 
     Of those of the best set by a logistic regression on how well their form explains them, on how
     many standard errors they are from no effect, on their size beside the greatest and on their
     companions; of the others by the posterior of all sets that have them, in whichever form.
-    Args: posterior {candidate: ...} of the Selection; weights {candidate: Weight}.
+    Args: posterior {candidate: ...} of the Selection; supports {candidate: Support}.
     """
-    there = {cause.effect: presence(weight, rules, rules.shift(cause.effect))
-             for cause, weight in weights.items()}
+    there = {cause.effect: presence(support, rules, rules.shift(cause.effect))
+             for cause, support in supports.items()}
     return by_effect(posterior) | there
 
 
@@ -92,7 +92,7 @@ def by_effect(posterior: dict) -> dict[str, float]:
     return found
 
 
-def presence(weight: Weight, rules: Rules, shift: float = 0.0) -> float:
+def presence(support: Support, rules: Rules, shift: float = 0.0) -> float:
     """
     Return the probability that an effect of the best set is present.
 
@@ -103,7 +103,7 @@ def presence(weight: Weight, rules: Rules, shift: float = 0.0) -> float:
     greatest one: it may stand for what the formula of that one is wrong by.
     """
     base, form, far, lesser, beside = rules.calibration
-    value = (base + form * weight.explained
-             + (far + lesser * (1.0 - weight.relative)) * np.log1p(weight.distance)
-             + beside * weight.companions + shift)
+    value = (base + form * support.explained
+             + (far + lesser * (1.0 - support.relative)) * np.log1p(support.distance)
+             + beside * support.companions + shift)
     return float(1.0 / (1.0 + np.exp(-value)))

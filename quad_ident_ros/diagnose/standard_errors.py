@@ -9,13 +9,13 @@ import numpy as np
 from scipy.linalg import block_diag
 
 from quad_ident_ros.diagnose.discrepancy import log_likelihood, scales
-from quad_ident_ros.diagnose.file_errors import with_constants
 from quad_ident_ros.diagnose.fitted import distances_of, Fitted
 from quad_ident_ros.diagnose.frame import blocks_at, Frame, frame_at, normal_at
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.diagnose.sensor_errors import sensor_covariance
 from quad_ident_ros.greybox.estimate import Estimate
 from quad_ident_ros.greybox.flights import Flight
+from quad_ident_ros.greybox.known_together import with_constants
 from quad_ident_ros.greybox.normal import covariance_of, first_of, marginal, Normal
 from quad_ident_ros.greybox.nuisances import Layout
 from quad_ident_ros.greybox.parameters import INDEX, limits, uncertain_constants

@@ -58,7 +58,7 @@ def verdict_of(bench: Bench, judged: Judgement, causes: tuple, ruled_out: Sequen
     one that what remains belongs to, by a law that is none of its forms.
     """
     rules, checks = bench.rules, flight_checks(bench, judged)
-    named = sorted(judged.material, key=lambda cause: -judged.weights[cause].contribution)
+    named = sorted(judged.material, key=lambda cause: -judged.supports[cause].contribution)
     # A flight that differs vetoes `none`; effects are what the others show, and it is named.
     unknown = (bool(judged.stand_ins or judged.unexplained and not form_unknown)
                or not named and any(one.differs for one in checks))
@@ -67,7 +67,7 @@ def verdict_of(bench: Bench, judged: Judgement, causes: tuple, ruled_out: Sequen
         bench.selection, tuple(named), rules, partial(_replaces, bench, judged))
     total = told_apart(judged.probability, bench.selection.posterior,
                        [cause for cause in named if cause in doubts])
-    minor = tuple(Minor(cause.effect, total[cause.effect], judged.weights[cause].contribution)
+    minor = tuple(Minor(cause.effect, total[cause.effect], judged.supports[cause].contribution)
                   for cause in judged.model.effects
                   if cause not in {*judged.material, *judged.stand_ins})
     certain = tuple(cause for cause in named if cause not in doubts)
@@ -145,12 +145,12 @@ def _ranking(bench: Bench, judged: Judgement, causes: tuple, total: dict,
     before = gaps.gap([gaps.ends(track, bench.vehicle, z0 + nuisance, bench.horizon)])
     rows = {}
     for cause in causes:
-        weight = judged.weights.get(cause)
-        if cause.effect in rows and weight is None:
+        support = judged.supports.get(cause)
+        if cause.effect in rows and support is None:
             continue
         parameters, gap_after = {}, before
         # A form that gave way to the usual one, which was taken out later, is in neither.
-        if weight is not None and errors.keys() >= {*cause.columns}:
+        if support is not None and errors.keys() >= {*cause.columns}:
             z = model.z if cause in model.effects else best.estimate.z
             units = {one.name: one.unit for one in EFFECTS[cause.effect].parameters}
             for column in cause.columns:
@@ -165,11 +165,11 @@ def _ranking(bench: Bench, judged: Judgement, causes: tuple, total: dict,
             gap_after = gaps.gap([gaps.ends(track, bench.vehicle, alone + nuisance,
                                             bench.horizon)])
         rows[cause.effect] = Ranked(
-            cause.effect, total[cause.effect], weight and cause.form,
-            form_unknown.get(cause.effect, weight and weight.explained),
-            weight and weight.contribution, weight and weight.stability,
-            weight and weight.distance, weight and weight.companions, parameters, gap_after,
-            weight and weight.gap)
+            cause.effect, total[cause.effect], support and cause.form,
+            form_unknown.get(cause.effect, support and support.explained),
+            support and support.contribution, support and support.stability,
+            support and support.distance, support and support.companions, parameters, gap_after,
+            support and support.gap)
     for name in ruled_out:
         rows[name] = Ranked(name, 0.0, None, None, None, None, None, None, {}, before, None)
     named = {cause.effect for cause in judged.material}

@@ -26,4 +26,4 @@ FORM = Form(
            'battery was as the flight began',
     thrust=thrust, without_voltage=True, apart=('spent',),
     same_motion=(('charge that was used before the flight', 'thrust coefficient'),),
-    told_by='a recorded voltage, or flights from a full battery')
+    separated_by='a recorded voltage, or flights from a full battery')

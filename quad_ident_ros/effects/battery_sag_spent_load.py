@@ -33,4 +33,4 @@ FORM = Form(
            'Electric Vehicle Journal 3, 2009',
     thrust=thrust, without_voltage=True, apart=('lost_before',),
     same_motion=(('charge that was used before the flight', 'thrust coefficient'),),
-    told_by='a recorded voltage, or flights from a full battery')
+    separated_by='a recorded voltage, or flights from a full battery')

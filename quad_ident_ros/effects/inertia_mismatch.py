@@ -41,5 +41,5 @@ EFFECT = Effect(
     scale_group=True,
     same_motion=(('inertia about x', 'arms along y'), ('inertia about y', 'arms along x'),
                  ('inertia about z', 'torque coefficient')),
-    told_by='a ruler for the arms, a pendulum for the inertia, a thrust stand for the torque '
+    separated_by='a ruler for the arms, a pendulum for the inertia, a thrust stand for the torque '
             'coefficient')

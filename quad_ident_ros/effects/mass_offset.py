@@ -26,4 +26,4 @@ EFFECT = Effect(
     confused_with=('thrust_scale',),
     scale_group=True, ratio='thrust per mass',
     same_motion=(('mass', 'thrust coefficient with the inertia in proportion'),),
-    told_by='a scale for the mass, a thrust stand for the thrust coefficient')
+    separated_by='a scale for the mass, a thrust stand for the thrust coefficient')

@@ -33,4 +33,4 @@ EFFECT = Effect(
     confused_with=('mass_offset', 'battery_sag', 'inflow'),
     scale_group=True, per_flight=(0.03,), ratio='thrust per mass',
     same_motion=(('thrust coefficient', 'mass with the inertia in proportion'),),
-    told_by='a scale for the mass, a thrust stand for the thrust coefficient')
+    separated_by='a scale for the mass, a thrust stand for the thrust coefficient')

@@ -8,7 +8,7 @@ import numpy as np
 
 from quad_ident_ros.greybox.estimate import Estimate, estimate
 from quad_ident_ros.greybox.flights import Flight
-from quad_ident_ros.greybox.normal import Normal, scatter_of
+from quad_ident_ros.greybox.normal import covariance_of, first_of, Normal, scatter_of
 from quad_ident_ros.greybox.parameters import INDEX, limits, NAMES, uncertain_constants
 from quad_ident_ros.model.covariance import Covariance, covariance_of_matrix
 from quad_ident_ros.model.vehicle import Vehicle
@@ -33,30 +33,37 @@ def known_together(found: Estimate, flights: Sequence[Flight], vehicle: Vehicle
         both = [*columns, *(INDEX[name] for name in constants)]
         around = estimate(flights, vehicle, found.z, both, noise=found.noise,
                           starts=found.starts, iterations=1)
-        covariance = _with_constants(covariance, around.normal, limits(vehicle)[2, both],
-                                     np.array(list(constants.values())))
+        held, whole = with_constants(around.normal, np.array(list(constants.values())),
+                                     limits(vehicle)[2, both])
+        whole[:len(columns), :len(columns)] += covariance - held
+        covariance = whole
     return covariance_of_matrix((*(NAMES[column] for column in columns), *constants), covariance)
 
 
-def _with_constants(covariance: np.ndarray, normal: Normal, size: np.ndarray, stated: np.ndarray
-                    ) -> np.ndarray:
+def with_constants(normal: Normal, deviations: np.ndarray, size: np.ndarray
+                   ) -> tuple[np.ndarray, np.ndarray]:
     """
-    Return the covariance (C + K, C + K) of C columns and K constants with stated deviations (K,).
+    Return the covariances of columns, (C, C), and of these and constants, (C + K, C + K).
 
-    Args: covariance (C, C) with exact constants; normal, size (C + K,): of all. The columns
-    follow the constants by the line of best fits. Where flights would rather have other constants
-    than the file's, that distance counts as an error.
+    Of the columns with the constants held, and of all with constants known to deviations (K,).
+    Where flights would rather have other constants, that distance counts as an error: the vehicle
+    that is named has those of the file. Args: normal, size (C + K,): of all.
     """
-    count = len(covariance)
-    information = normal.information * np.outer(size, size)
-    gradient, ties = normal.gradient * size, information[:count, count:]
-    follow = -np.linalg.solve(information[:count, :count], ties)
-    white = float(scatter_of(normal)[count:].max())
-    told = (information[count:, count:] + ties.T @ follow) / white
-    spread = np.linalg.inv(told + np.diag((size[count:] / stated) ** 2))
-    shift = spread @ (gradient[count:] + follow.T @ gradient[:count]) / white
-    spread += np.outer(shift, shift)
-    along = np.vstack([follow, np.eye(len(stated))]) * size[:, None]
-    whole = along @ spread @ along.T
-    whole[:count, :count] += covariance
-    return np.asarray(whole)
+    count = len(size) - len(deviations)
+    # One scatter for all, the largest: what scales the whole motion stays in proportion.
+    widest = float(scatter_of(normal).max())
+    information, gradient = normal.information / widest, normal.gradient / widest
+    white = Normal(information, gradient, normal.cost, normal.scores[:0])
+    held = covariance_of(first_of(white, count), size[:count])
+    # The columns follow the constants, of which flights show what the columns do not take up. In
+    # units of the deviations: beside a tiny one no other number would be told apart from zero.
+    moved = -held @ information[:count, count:]
+    shown = information[count:, count:] + information[count:, :count] @ moved
+    units = np.outer(deviations, deviations)
+    known = units * np.linalg.inv(shown * units + np.eye(len(deviations)))
+    shift = known @ (gradient[count:] + moved.T @ gradient[:count])
+    known = known + np.outer(shift, shift)
+    follow = np.vstack([moved, np.eye(len(deviations))])
+    whole = follow @ known @ follow.T
+    whole[:count, :count] += held
+    return held, whole

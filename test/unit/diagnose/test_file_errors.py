@@ -10,10 +10,8 @@ import pytest
 
 from quad_ident_ros.diagnose import bench
 from quad_ident_ros.diagnose.diagnosis import diagnose
-from quad_ident_ros.diagnose.file_errors import with_constants
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import SENSORS
-from quad_ident_ros.greybox.normal import Normal
 from quad_ident_ros.greybox.parameters import constants_behind, INDEX
 from quad_ident_ros.model.vehicle import load_vehicle, Rotor
 
@@ -75,34 +73,6 @@ def test_arms_whose_error_is_taken_out_count_as_those_of_the_file(monkeypatch):
     found = bench.Bench([], (), VEHICLE, selection, None, None).errors_by_file(named)
     # An error of the arms is one of the file itself.
     assert found == {offset: 0.2, gyro: 0.1}
-
-
-def test_a_parameter_that_stands_for_a_constant_has_its_deviation():
-    # The residual shows a parameter and twice a constant, whose sum alone is known, to 0.01.
-    slopes, weight = np.array([1.0, 2.0]), 1e4
-    known = Normal(weight * np.outer(slopes, slopes), np.zeros(2), 0.0, np.zeros((1, 2)))
-    held, whole = with_constants(known, np.array([0.3]), np.ones(2))
-    assert held == pytest.approx(np.array([[1.0 / weight]]))
-    assert whole == pytest.approx(np.array([[1.0 / weight + 4.0 * 0.09, -2.0 * 0.09],
-                                            [-2.0 * 0.09, 0.09]]))
-
-
-def test_a_constant_that_is_known_exactly_hides_none_of_the_others():
-    # Beside the constant of 0.3 a tiny one, as a drag of a millionth.
-    slopes, weight = np.array([1.0, 2.0, 1.0]), 1e4
-    known = Normal(weight * np.outer(slopes, slopes), np.zeros(3), 0.0, np.zeros((1, 3)))
-    _, whole = with_constants(known, np.array([0.3, 1e-9]), np.ones(3))
-    assert np.sqrt(np.diag(whole)) == pytest.approx([np.hypot(0.01, 0.6), 0.3, 1e-9])
-
-
-def test_what_flights_would_rather_have_counts_as_an_error():
-    # The constant shows by itself, 0.2 off; the parameter goes with it.
-    weight = 1e4
-    information = weight * (np.outer([1.0, 2.0], [1.0, 2.0]) + np.diag([0.0, 1.0]))
-    known = Normal(information, information @ [-0.4, 0.2], 0.0, np.zeros((1, 2)))
-    held, whole = with_constants(known, np.array([1.0]), np.ones(2))
-    assert held[0, 0] == pytest.approx(1.0 / weight)
-    assert whole[0, 0] == pytest.approx(0.4 ** 2, rel=0.01)
 
 
 def test_a_file_without_deviations_is_known_to_some_percent():

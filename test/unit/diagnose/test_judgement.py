@@ -16,7 +16,7 @@ from quad_ident_ros.diagnose.intake import take_in
 from quad_ident_ros.diagnose.judgement import (
     _fewest,
     _idle,
-    _weight,
+    _support,
     beyond,
     clear,
     closes_half,
@@ -32,7 +32,7 @@ from quad_ident_ros.diagnose.judgement import (
 )
 from quad_ident_ros.diagnose.noise import noise_of
 from quad_ident_ros.diagnose.priors import EffectPrior
-from quad_ident_ros.diagnose.probability import Weight
+from quad_ident_ros.diagnose.probability import Support
 from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.diagnose.select import select
 from quad_ident_ros.diagnose.verdict import flight_checks
@@ -139,22 +139,22 @@ def test_what_is_known_apart_matters_whatever_the_error_of_form_of_others():
     (0.08, 30.0, True), (0.02, 3.5, False), (1.0, 0.95 * RULES.shown, False)])
 def test_what_is_probable_and_some_standard_errors_from_none_is_clear(
         contribution, distance, expected):
-    weight = Weight(contribution, 5.0, 0.9, {}, distance, relative=0.3)
+    support = Support(contribution, 5.0, 0.9, {}, distance, relative=0.3)
     cause = Named(effect='wind')
-    assert clear({cause: weight}, distance, RULES) is expected
+    assert clear({cause: support}, distance, RULES) is expected
 
 
 def test_what_a_fleet_often_has_is_clear_sooner():
-    cause, weight = Named(effect='wind'), Weight(0.02, 5.0, 0.9, {}, 1.5, relative=0.3)
+    cause, support = Named(effect='wind'), Support(0.02, 5.0, 0.9, {}, 1.5, relative=0.3)
     often = replace(RULES, priors={'wind': EffectPrior(0.95, {}, {}, None)})
-    assert not clear({cause: weight}, 3.5, RULES) and clear({cause: weight}, 3.5, often)
+    assert not clear({cause: support}, 3.5, RULES) and clear({cause: support}, 3.5, often)
 
 
 def test_effects_that_cancel_are_not_clear_together():
-    weight = Weight(1.0, 5.0, 0.9, {}, 50.0)
+    support = Support(1.0, 5.0, 0.9, {}, 50.0)
     one, other = Named(effect='mass_offset'), Named(effect='thrust_scale')
-    assert clear({one: weight}, 50.0, RULES)
-    assert not clear({one: weight, other: weight}, 1.0, RULES)
+    assert clear({one: support}, 50.0, RULES)
+    assert not clear({one: support, other: support}, 1.0, RULES)
 
 
 def test_an_effect_explains_what_it_does_in_the_group_where_it_does_most():
@@ -163,10 +163,10 @@ def test_an_effect_explains_what_it_does_in_the_group_where_it_does_most():
     one, other = (SimpleNamespace(gap=each, ends=ends) for each in (
         of(position=0.0099), of(position=0.0105, rate=0.6)))
     before = of(position=0.0105, rate=0.66)
-    weight = _weight(one, other, before, NOISE, 7.0, RULES)
-    assert weight.distance == 7.0
-    assert weight.explained == pytest.approx(1.0, abs=0.01)
-    assert weight.contribution == pytest.approx(max(lost_shares(
+    support = _support(one, other, before, NOISE, 7.0, RULES)
+    assert support.distance == 7.0
+    assert support.explained == pytest.approx(1.0, abs=0.01)
+    assert support.contribution == pytest.approx(max(lost_shares(
         one.gap, other.gap, before, NOISE, RULES).values()))
 
 
@@ -382,8 +382,8 @@ def test_what_loses_nothing_in_the_model_that_is_reported_does_not_matter(drag, 
     bench = SimpleNamespace(slopes=lambda _: None, rules=RULES, distance=lambda *_: 0.1,
                             without=without)
     model = SimpleNamespace(effects=causes, gap=of(velocity=0.04))
-    weights = dict.fromkeys(causes, Weight(0.5, 5.0, 0.9, {}, 3.0))
-    idle = _idle(bench, model, causes, weights, of(velocity=0.8), NOISE)
+    supports = dict.fromkeys(causes, Support(0.5, 5.0, 0.9, {}, 3.0))
+    idle = _idle(bench, model, causes, supports, of(velocity=0.8), NOISE)
     assert (idle and idle.effect) == expected
 
 

@@ -13,7 +13,7 @@ from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.diagnose.fitted import prior_deviations
 from quad_ident_ros.diagnose.frame import form_errors_of
 from quad_ident_ros.diagnose.priors import EffectPrior, load_priors, write_priors
-from quad_ident_ros.diagnose.probability import presence, Weight
+from quad_ident_ros.diagnose.probability import presence, Support
 from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.diagnose.standard_errors import OF_EACH
 from quad_ident_ros.effects.registry import EFFECTS
@@ -76,11 +76,11 @@ def test_a_missing_file_is_refused(tmp_path):
 
 def test_the_log_odds_of_an_effect_rise_by_those_of_the_fleet():
     """By Bayes' rule odds are multiplied by the odds of the fleet over the usual ones."""
-    weight = Weight(0.2, 5.0, 0.9, {}, 6.0)
+    support = Support(0.2, 5.0, 0.9, {}, 6.0)
     for present in (0.01, RULES.usual_presence, 0.9):
         known = rules(rotor_drag=present)
-        before, after = (presence(weight, RULES),
-                         presence(weight, known, known.shift('rotor_drag')))
+        before, after = (presence(support, RULES),
+                         presence(support, known, known.shift('rotor_drag')))
         ratio = (present / (1 - present)) / (RULES.usual_presence / (1 - RULES.usual_presence))
         assert after / (1 - after) == pytest.approx(ratio * before / (1 - before))
     assert known.shift('wind') == 0.0

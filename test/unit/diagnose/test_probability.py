@@ -13,8 +13,8 @@ from quad_ident_ros.diagnose.probability import (
     presence,
     probabilities,
     relative_size,
+    Support,
     told_apart,
-    Weight,
 )
 from quad_ident_ros.diagnose.rules import RULES
 
@@ -23,7 +23,7 @@ RULE = replace(RULES, calibration=(-1.0, 1.5, 2.0, -0.7, 0.3))
 
 
 def of(contribution, distance, explained=0.9, relative=1.0, companions=0, stability=5.0):
-    return Weight(contribution, stability, explained, {}, distance, relative, companions)
+    return Support(contribution, stability, explained, {}, distance, relative, companions)
 
 
 @pytest.mark.parametrize('distance', [0.0, 2.0, 1e4])
@@ -63,9 +63,9 @@ def test_sizes_are_beside_the_greatest_effect():
 
 
 def test_companions_are_the_others_that_clearly_contribute():
-    weights = {'a': of(0.5, 0.9), 'b': of(0.3, 0.9), 'c': of(0.3, 0.9, stability=2.0),
+    supports = {'a': of(0.5, 0.9), 'b': of(0.3, 0.9), 'c': of(0.3, 0.9, stability=2.0),
                'd': of(0.05, 0.9)}
-    found = beside_others(weights, RULES)
+    found = beside_others(supports, RULES)
     assert [found[name].companions for name in 'abcd'] == [1, 1, 2, 2]
 
 
@@ -78,8 +78,8 @@ def test_nothing_is_certain(contribution, distance, relative):
 
 def test_what_is_not_in_the_best_set_keeps_its_posterior_summed_over_its_forms():
     drag, wind, gust = (Named('drag', 'a'), Named('wind', 'a'), Named('wind', 'b'))
-    weights = {drag: of(0.8, 0.9)}
-    found = probabilities({drag: 0.99, wind: 0.03, gust: 0.02}, weights, RULE)
+    supports = {drag: of(0.8, 0.9)}
+    found = probabilities({drag: 0.99, wind: 0.03, gust: 0.02}, supports, RULE)
     assert found == {'drag': presence(of(0.8, 0.9), RULE), 'wind': pytest.approx(0.05)}
 
 
