@@ -3,7 +3,7 @@
 """Bandwidth of a closed loop: the frequency at which the path falls to 0.707 of what is asked."""
 
 import numpy as np
-from scipy.signal import csd, welch
+import scipy
 
 AXES = ('x', 'y', 'z', 'yaw')
 HALF_POWER = 0.5 ** 0.5
@@ -61,8 +61,8 @@ def bandwidth_of_flight(asked: np.ndarray, flown: np.ndarray, rate: float
     found: dict[str, float | None] = {}
     for axis, name in enumerate(AXES):
         pair = asked[:, axis] - asked[:, axis].mean(), flown[:, axis] - flown[:, axis].mean()
-        f, across = csd(*pair, fs=rate, nperseg=count)
-        powers = [welch(each, fs=rate, nperseg=count)[1] for each in pair]
+        f, across = scipy.signal.csd(*pair, fs=rate, nperseg=count)
+        powers = [scipy.signal.welch(each, fs=rate, nperseg=count)[1] for each in pair]
         coherent = np.abs(across) ** 2 >= COHERENT * powers[0] * powers[1]
         end = len(f) if coherent[1:].all() else 1 + int(np.argmin(coherent[1:]))
         gains = np.abs(across[1:end]) / np.maximum(powers[0][1:end], 1e-300)

@@ -5,7 +5,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial.transform import Rotation
+import scipy
 
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.controller import Controller, Tracking, WANTED
@@ -52,7 +52,7 @@ class UserController:
     def control(self, seen: np.ndarray, wanted: np.ndarray, dt: float, command: np.ndarray
                 ) -> None:
         """Write the commands (n,) rad/s that the user's controller gives."""
-        turned = Rotation.from_matrix(seen[6:15].reshape(3, 3)).as_quat()
+        turned = scipy.spatial.transform.Rotation.from_matrix(seen[6:15].reshape(3, 3)).as_quat()
         state = np.concatenate([seen[:6], turned[3:], turned[:3], seen[15:]])
         made = self._user.call('control', self._control, state, wanted.copy(), dt)
         found = self._user.array('control', self._control, made,

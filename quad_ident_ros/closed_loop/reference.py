@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.interpolate import make_lsq_spline
+import scipy
 
 from quad_ident_ros.data.record import FlightRecord, QUATERNION
 from quad_ident_ros.data.split import spans
@@ -97,6 +97,6 @@ def wanted_of(t: np.ndarray, path: np.ndarray, knot: float = KNOT) -> np.ndarray
     knot = max(knot, 2.0 * float(t[1] - t[0]))
     inner = np.arange(t[0] + knot, t[-1] - 0.5 * knot, knot)
     knots = np.concatenate([np.full(6, t[0]), inner, np.full(6, t[-1])])
-    spline = make_lsq_spline(t, path, knots, k=5)
+    spline = scipy.interpolate.make_lsq_spline(t, path, knots, k=5)
     parts = [spline(t), *(spline.derivative(order)(t) for order in (1, 2, 3))]
     return np.hstack([*(part[:, :3] for part in parts), parts[0][:, 3:], parts[1][:, 3:]])

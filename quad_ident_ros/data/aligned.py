@@ -5,7 +5,7 @@
 from dataclasses import replace
 
 import numpy as np
-from scipy.interpolate import Akima1DInterpolator
+import scipy
 
 from quad_ident_ros.data.quality.clock import clock_offset, SEVERAL, velocity_offset
 from quad_ident_ros.data.quality.glitches import jumps
@@ -79,7 +79,7 @@ def _moved(record: FlightRecord, stream: str, names: list[str], offset: float
     there = (at <= known[-1]) & (known[after] - known[after - 1]
                                  <= max(GAP, PERIODS * record.period()))
     moved = values.copy()
-    moved[there] = Akima1DInterpolator(known, values[good])(at[there])
+    moved[there] = scipy.interpolate.Akima1DInterpolator(known, values[good])(at[there])
     if places:
         moved[:, places] /= np.linalg.norm(moved[:, places], axis=1, keepdims=True)
     return moved, there

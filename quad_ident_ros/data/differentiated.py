@@ -13,8 +13,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import numpy as np
-from scipy.spatial.transform import Rotation
-from scipy.stats import median_abs_deviation
+import scipy
 
 from quad_ident_ros.data.record import EULER, FlightRecord, QUATERNION
 from quad_ident_ros.model.attitude import euler_from_quaternion, quaternion_from_euler
@@ -110,7 +109,7 @@ def with_motion(record: FlightRecord) -> FlightRecord:
                                                   DIFFERENCES: rough})
 
 
-def _turns(record: FlightRecord) -> Rotation | None:
+def _turns(record: FlightRecord) -> 'scipy.spatial.transform.Rotation | None':
     """Return the attitudes of a record, None where it has none."""
     if not (record.has(*QUATERNION) or record.has(*EULER)):
         return None
@@ -119,7 +118,7 @@ def _turns(record: FlightRecord) -> Rotation | None:
     lengths = np.linalg.norm(q, axis=1)
     if lengths.min() < 0.5 or lengths.max() > LONGEST:
         return None
-    return Rotation.from_quat(np.roll(q, -1, axis=1))
+    return scipy.spatial.transform.Rotation.from_quat(np.roll(q, -1, axis=1))
 
 
 def _are_differences(t: np.ndarray, moved: np.ndarray, slope: np.ndarray) -> bool:
@@ -134,7 +133,8 @@ def _are_differences(t: np.ndarray, moved: np.ndarray, slope: np.ndarray) -> boo
     if not period > 0.0 or inner.sum() < MANY:
         return False
     mine, third = slope[1:-1][inner], np.diff(slope, 3, axis=0)
-    noise = median_abs_deviation(third, scale='normal') / np.sqrt(20.0)    # white noise as it is
+    # White noise as it is.
+    noise = scipy.stats.median_abs_deviation(third, scale='normal') / np.sqrt(20.0)
     each = moved / steps[:, None]
     both = (moved[1:] + moved[:-1]) / (steps[1:] + steps[:-1])[:, None]
     return bool(np.all(noise > QUIET)) and any(

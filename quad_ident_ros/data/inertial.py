@@ -13,7 +13,7 @@ Source: strapdown equations, Titterton and Weston, Strapdown Inertial Navigation
 from dataclasses import replace
 
 import numpy as np
-from scipy.spatial.transform import Rotation
+import scipy
 
 from quad_ident_ros.data.record import EULER, FlightRecord, QUATERNION
 from quad_ident_ros.model.attitude import rotation_matrix, turn, turned_on
@@ -88,7 +88,8 @@ def _level(rotation: np.ndarray, force: np.ndarray) -> np.ndarray:
 
 def _quaternions(first: np.ndarray, relative: np.ndarray) -> np.ndarray:
     """Return quaternions (N, 4) that begin with a rotation (3, 3) and turn on as relative ones."""
-    turned = Rotation.from_matrix(first) * Rotation.from_quat(np.roll(relative, -1, axis=1))
+    rotation = scipy.spatial.transform.Rotation
+    turned = rotation.from_matrix(first) * rotation.from_quat(np.roll(relative, -1, axis=1))
     return np.roll(turned.as_quat(), 1, axis=1)
 
 

@@ -7,7 +7,7 @@ import math
 from pathlib import Path
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
+import scipy
 
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import Rotor, Vehicle
@@ -38,7 +38,7 @@ def order_of(where: str | Path, rotors: Sequence[Rotor], source: str,
     turning = np.multiply.outer([rotor.spin for rotor in vehicle.rotors],
                                 [rotor.spin for rotor in rotors]) < 0
     # A sense of turning that differs decides only among motors in one direction.
-    rows, columns = linear_sum_assignment(angles + 0.01 * turning)
+    rows, columns = scipy.optimize.linear_sum_assignment(angles + 0.01 * turning)
     order = tuple(int(columns[k]) + 1 for k in np.argsort(rows))
     near = _near(rotors)
     for k, motor in enumerate(order):

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 import numpy as np
-from scipy.special import chdtrc, ndtri
+import scipy
 
 from quad_ident_ros.diagnose import gap as gaps
 from quad_ident_ros.diagnose import input_errors
@@ -386,9 +386,9 @@ def standard_errors_from_none(off: np.ndarray, covariance: np.ndarray) -> float:
     values, vectors = np.linalg.eigh(covariance / np.outer(errors, errors))
     along = vectors.T @ (off / errors)
     square = float(np.sum(along ** 2 / np.maximum(values, 1e-12)))
-    chance = float(chdtrc(len(off), square))
+    chance = float(scipy.special.chdtrc(len(off), square))
     # Below the smallest probability of a float the root is as good.
-    return float(-ndtri(0.5 * chance)) if chance > 1e-300 else float(np.sqrt(square))
+    return float(-scipy.special.ndtri(0.5 * chance)) if chance > 1e-300 else float(np.sqrt(square))
 
 
 def common(model: Model, column: int) -> float:

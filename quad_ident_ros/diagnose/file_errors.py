@@ -10,7 +10,7 @@ these are off, so are the parameters, however long the flights are.
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.linalg import block_diag
+import scipy
 
 from quad_ident_ros.diagnose.fitted import distances_of
 from quad_ident_ros.diagnose.frame import frame_at, normal_at
@@ -40,7 +40,8 @@ def errors_by_file(chosen: tuple, fit: Estimate, flights: Sequence[Flight], vehi
     frame = frame_at(list(flights), vehicle, fit, layout.wanted, rules)
     normal = normal_at(frame, fit, layout, distances_of(chosen, fit, vehicle), sizes,
                        form_error)
-    precision = block_diag(np.zeros((len(columns), len(columns))), fit.nuisances.precision)
+    precision = scipy.linalg.block_diag(np.zeros((len(columns), len(columns))),
+                                        fit.nuisances.precision)
     size = limits(vehicle)[2, columns]
     shared = marginal(normal, len(columns), precision)
     held, whole = with_constants(shared, np.array(list(behind.values())), size)

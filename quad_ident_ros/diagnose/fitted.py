@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import block_diag
+import scipy
 
 from quad_ident_ros.diagnose.candidates import Candidate
 from quad_ident_ros.diagnose.discrepancy import fitted_sizes
@@ -129,8 +129,8 @@ def fitted_of(chosen: tuple, fit: Estimate, vehicle: Vehicle, frame: Frame,
     value, sizes = fitted_sizes(blocks, form_errors_of(distances, rules), grids,
                                 quadratic.scatter, start)
     distance = np.append((fit.z - nominal(vehicle))[fit.columns], fit.nuisances.values)
-    prior = block_diag(np.diag(prior_deviations(vehicle, rules)[fit.columns] ** -2.0),
-                       fit.nuisances.precision)
+    prior = scipy.linalg.block_diag(
+        np.diag(prior_deviations(vehicle, rules)[fit.columns] ** -2.0), fit.nuisances.precision)
     places = [row for cause in chosen for row in rows[cause]]
     block = np.ix_(places, places)
     return Fitted(chosen, fit, value - 0.5 * float(distance @ prior @ distance)

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import block_diag
+import scipy
 
 from quad_ident_ros.diagnose.candidates import Candidate
 from quad_ident_ros.diagnose.evidence import occam, Quadratic
@@ -67,7 +67,8 @@ def manoeuvres(selection: Selection, flights: Sequence[Flight], vehicle: Vehicle
     scatter, noise = selection.quadratic.scatter, np.median(selection.noise, axis=0)
     nuisances, columns = NuisanceValues.of(selection.best.nuisances, 1), _columns(selection)
     layout = Layout(columns, nuisances.columns, 1)
-    precision = block_diag(np.zeros((len(columns), len(columns))), nuisances.precision)
+    precision = scipy.linalg.block_diag(np.zeros((len(columns), len(columns))),
+                                        nuisances.precision)
     rate = float(np.clip(1.0 / np.median([flight.period for flight in flights]), RATES[0], RATE))
     found = []
     for name in TRAJECTORIES:

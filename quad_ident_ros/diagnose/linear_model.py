@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.linalg import block_diag
+import scipy
 
 from quad_ident_ros.diagnose.candidates import Candidate
 from quad_ident_ros.diagnose.evidence import Quadratic
@@ -48,7 +48,7 @@ def quadratic_at(frame: Frame, fit: Estimate, chosen: tuple, columns: list[int],
     scatter = float(np.median(scatter_of(normal)[:len(columns)])) if columns else 1.0
     return Quadratic(normal.information, normal.gradient, normal.cost,
                      np.append(fit.z[columns] - null, nuisances.values),
-                     block_diag(np.diag(wide ** -2.0), nuisances.precision),
+                     scipy.linalg.block_diag(np.diag(wide ** -2.0), nuisances.precision),
                      np.append(lower[columns] - null, -beyond),
                      np.append(upper[columns] - null, beyond), scatter)
 

@@ -5,7 +5,7 @@
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.signal import welch
+import scipy
 
 from quad_ident_ros.diagnose.residual_wrench import ResidualWrench, WINDOW
 from quad_ident_ros.model.vehicle import Vehicle
@@ -30,8 +30,8 @@ def residual_spectrum(flights: Sequence[ResidualWrench], vehicle: Vehicle
              for number in range(flight.stretch[-1] + 1)]
     length = min(round(SEGMENT / step), max(map(len, parts)))
     parts = [part for part in parts if 2 * len(part) >= length]
-    densities = [welch(part, 1.0 / step, nperseg=min(length, len(part)), nfft=length, axis=0)[1]
-                 for part in parts]
+    densities = [scipy.signal.welch(part, 1.0 / step, nperseg=min(length, len(part)),
+                                    nfft=length, axis=0)[1] for part in parts]
     density = np.average(densities, axis=0, weights=[len(part) for part in parts])
     frequency = np.fft.rfftfreq(length, step)
     shown = (frequency > 0.0) & (frequency <= HIGHEST * (1.0 + 1e-9))

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.integrate import cumulative_trapezoid
+import scipy
 
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.diagnose.state_filter import follows_gyro, level_error
@@ -101,7 +101,7 @@ def _pulled(speed: np.ndarray, period: float) -> np.ndarray:
 
 def _integral(values: np.ndarray, period: float) -> np.ndarray:
     """Return the integral (B, n, k) of values over the time since a rollout began."""
-    return np.asarray(cumulative_trapezoid(values, dx=period, axis=1, initial=0.0))
+    return np.asarray(scipy.integrate.cumulative_trapezoid(values, dx=period, axis=1, initial=0.0))
 
 
 def _of(recorded: np.ndarray, **parts: np.ndarray) -> np.ndarray:

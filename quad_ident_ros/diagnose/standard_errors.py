@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.linalg import block_diag
+import scipy
 
 from quad_ident_ros.diagnose.discrepancy import log_likelihood, scales
 from quad_ident_ros.diagnose.fitted import distances_of, Fitted
@@ -83,7 +83,8 @@ def joint_of(fitted: Fitted, flights: Sequence[Flight], frame: Frame, vehicle: V
     layout = Layout(columns, fit.nuisances.columns, len(fit.nuisances.values))
     if constants:
         frame = frame_at(list(flights), vehicle, fit, layout.wanted, rules)
-    precision = block_diag(np.zeros((len(columns), len(columns))), fit.nuisances.precision)
+    precision = scipy.linalg.block_diag(np.zeros((len(columns), len(columns))),
+                                        fit.nuisances.precision)
 
     def of(one: Estimate) -> Normal:
         return marginal(normal_at(frame, one, layout, distances, (force, moment), form_error),

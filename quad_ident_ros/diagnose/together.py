@@ -5,7 +5,7 @@
 from collections.abc import Mapping
 
 import numpy as np
-from scipy.linalg import block_diag
+import scipy
 
 from quad_ident_ros.diagnose.bench import Bench, given, Model
 from quad_ident_ros.greybox.parameters import NAMES
@@ -40,8 +40,8 @@ def known_together(bench: Bench, model: Model, probability: Mapping[str, float]
         told = np.array([errors[column] for column in columns])
         scale = told / np.maximum(model.estimate.errors, 1e-300)
         first = len(best.columns)
-        whole = block_diag(model.estimate.covariance * np.outer(scale, scale),
-                           joint.stated[first:, first:])
+        whole = scipy.linalg.block_diag(model.estimate.covariance * np.outer(scale, scale),
+                                        joint.stated[first:, first:])
     shift = bench.shift_by_absent(model, probability)
     whole[:len(columns), :len(columns)] += np.outer(shift, shift)
     return covariance_of_matrix((*(NAMES[column] for column in columns), *constants), whole)

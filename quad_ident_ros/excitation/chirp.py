@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Chirp: a sine whose frequency sweeps."""
 
-import scipy.signal
+
+import scipy
 
 from quad_ident_ros import schema
 from quad_ident_ros.errors import InputError

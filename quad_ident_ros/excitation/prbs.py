@@ -3,7 +3,7 @@
 """Pseudo-random binary sequence."""
 
 import numpy as np
-from scipy.signal import max_len_seq
+import scipy
 
 from quad_ident_ros import schema
 from quad_ident_ros.errors import InputError
@@ -27,6 +27,6 @@ def prbs(t, amplitude=1.0, clock=0.1, order=9, seed=0):
     seed = schema.integer('seed', seed, 0)
     period = 2 ** order - 1
     state = np.unpackbits(np.array([seed % period + 1], '>u4').view(np.uint8))[-order:]
-    sequence = max_len_seq(order, state=state)[0] * 2.0 - 1.0
+    sequence = scipy.signal.max_len_seq(order, state=state)[0] * 2.0 - 1.0
     index = np.floor((t - t[0]) / clock + 1e-9).astype(int)
     return amplitude * sequence[index % period]

@@ -19,7 +19,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import logsumexp
+import scipy
 
 from quad_ident_ros.fleet.regression import Known, Posterior, Regression, Term, Terms, WIDTHS
 
@@ -273,7 +273,8 @@ def _probability(model: Regression, chosen: Sequence[Term], term: Term) -> tuple
     lasting = kinds != SINGLE
     gains = model.gains(rest)
     other = gains[lasting & (kinds != kinds[term.number])]
-    share = np.exp(logsumexp(other) - logsumexp(gains[lasting])) if other.size else 0.0
+    total = scipy.special.logsumexp
+    share = np.exp(total(other) - total(gains[lasting])) if other.size else 0.0
     return model.probability(np.flatnonzero(lasting), chosen, term, without), float(share)
 
 
@@ -281,8 +282,8 @@ def _between(model: Regression, chosen: Sequence[Term], term: Term) -> tuple[int
     """Return the first and the last flight at which a step may have happened."""
     rest = tuple(one for one in chosen if one != term)
     steps = model.terms.kind == STEP
-    gains = logsumexp(model.gains(rest)[steps], axis=1)
-    share = np.cumsum(np.exp(gains - logsumexp(gains)))
+    gains = scipy.special.logsumexp(model.gains(rest)[steps], axis=1)
+    share = np.cumsum(np.exp(gains - scipy.special.logsumexp(gains)))
     places = model.terms.place[steps]
     edge = 0.5 * (1.0 - INSIDE)
     first, last = (int(np.searchsorted(share, part)) for part in (edge, 1.0 - edge))

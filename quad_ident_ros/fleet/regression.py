@@ -15,7 +15,7 @@ from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import logsumexp
+import scipy
 
 from quad_ident_ros.fleet.scatter import Scatter
 
@@ -127,7 +127,8 @@ class Regression:
         """Return the log of the posterior of a set of terms, up to a constant of the values."""
         key = frozenset(chosen)
         if key not in self._scores:
-            self._scores[key] = float(logsumexp(self._evidence(chosen)[0])) + self._odds(chosen)
+            self._scores[key] = self._odds(chosen) + float(
+                scipy.special.logsumexp(self._evidence(chosen)[0]))
         return self._scores[key]
 
     def gains(self, chosen: Collection[Term]) -> np.ndarray:
@@ -171,7 +172,7 @@ class Regression:
         covariances = np.swapaxes(inverse, 1, 2) @ inverse
         means = (solved[:, None] @ inverse)[:, 0]
         means[:, :self._start.shape[1]] += self._start
-        return np.exp(evidence - logsumexp(evidence)), means, covariances
+        return np.exp(evidence - scipy.special.logsumexp(evidence)), means, covariances
 
     def probability(self, numbers: np.ndarray, chosen: Collection[Term], term: Term,
                     without: float) -> float:
@@ -182,7 +183,7 @@ class Regression:
         the place of; without: the score of the best set that has none of them.
         """
         rest = tuple(one for one in chosen if one != term)
-        there = self.score(rest) + float(logsumexp(self.gains(rest)[numbers]))
+        there = self.score(rest) + float(scipy.special.logsumexp(self.gains(rest)[numbers]))
         return float(1.0 / (1.0 + np.exp(np.clip(without - there, -700.0, 700.0))))
 
     def posterior(self, chosen: Collection[Term]) -> Posterior:
@@ -256,7 +257,7 @@ class Regression:
                  - np.einsum('pmk,pmk->pk', shared, shared))
         power = np.maximum(power, 0.0)
         along = self._along[:, always:] - (solved[:, None] @ shared)[:, 0]
-        evidence = (evidence - logsumexp(evidence))[:, None]
+        evidence = (evidence - scipy.special.logsumexp(evidence))[:, None]
         widths = (np.array(WIDTHS) * self._error[:, None]) ** 2      # (P, W)
         # A term raises a point by no more than this, and is worth what it is at the best one.
         most = evidence + 0.5 * along ** 2 / (1.0 / widths[:, -1:] + power)

@@ -10,7 +10,7 @@ nor τ is known: what depends on them is worked out on a grid of both and summed
 """
 
 import numpy as np
-from scipy.special import logsumexp
+import scipy
 
 SCATTERS = 40
 """
@@ -65,8 +65,8 @@ class Scatter:
             # For each scatter of single values the prior over those of days sums to 1.
             wide = usual ** 2 + singles[:, None] ** 2
             share = np.log(between) - np.log1p(between ** 2 / wide)
-            even += (share - logsumexp(share, axis=1, keepdims=True)).ravel()
-        self.prior = even - logsumexp(even)
+            even += (share - scipy.special.logsumexp(share, axis=1, keepdims=True)).ravel()
+        self.prior = even - scipy.special.logsumexp(even)
         squares = between[:, None] ** 2
         self._weights = 1.0 / (errors ** 2 + singles[:, None] ** 2)             # (G, N)
         together = np.add.reduceat(self._weights, self._starts, axis=1)[:, None]

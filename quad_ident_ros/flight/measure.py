@@ -7,8 +7,7 @@ from dataclasses import dataclass, field
 from typing import TypeAlias
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline
-from scipy.signal import lfilter
+import scipy
 
 from quad_ident_ros.model.attitude import product, turn
 
@@ -97,7 +96,7 @@ def gauss_markov(rng: np.random.Generator, count: int, width: int, step: float, 
     keep = np.exp(-step / time)
     noise = rng.standard_normal((count, width))
     noise[1:] *= np.sqrt(1 - keep ** 2)
-    return lfilter([1.0], [1.0, -keep], noise, axis=0)
+    return scipy.signal.lfilter([1.0], [1.0, -keep], noise, axis=0)
 
 
 def errors_of(sensors: Sensors, count: int, step: float, seed: int) -> np.ndarray:
@@ -162,8 +161,8 @@ def _fresh(stream: Stream, t: np.ndarray) -> np.ndarray:
 def _pose(t: np.ndarray, states: np.ndarray) -> Course:
     """Return position, velocity and quaternion as a function of time, between samples too."""
     spin = product(states[:, 6:10], np.pad(states[:, 10:], ((0, 0), (1, 0)))) / 2
-    place = CubicHermiteSpline(t, states[:, :3], states[:, 3:6])
-    attitude = CubicHermiteSpline(t, states[:, 6:10], spin)
+    place = scipy.interpolate.CubicHermiteSpline(t, states[:, :3], states[:, 3:6])
+    attitude = scipy.interpolate.CubicHermiteSpline(t, states[:, 6:10], spin)
     velocity = _linear(t, states[:, 3:6])
     return lambda at: np.concatenate([place(np.minimum(at, t[-1])), velocity(at),
                                       attitude(np.minimum(at, t[-1]))], axis=1)

@@ -9,7 +9,7 @@ from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.interpolate import make_interp_spline
+import scipy
 
 from quad_ident_ros import schema
 from quad_ident_ros.model.vehicle import Vehicle
@@ -202,7 +202,7 @@ def plan(name: str, vehicle: Vehicle, duration: float, seed: int
     knots = np.linspace(0.0, duration, max(8, round(duration / KNOT) + 1))
     course = TRAJECTORIES[name](knots, scale, rng)
     course[:, 2] += scale.altitude
-    spline = make_interp_spline(knots, course, k=5)
+    spline = scipy.interpolate.make_interp_spline(knots, course, k=5)
     derivatives = [spline, *(spline.derivative(order) for order in (1, 2, 3))]
 
     def trajectory(t: np.ndarray) -> Wanted:

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import block_diag
+import scipy
 
 from quad_ident_ros.greybox.flights import Flight
 from quad_ident_ros.greybox.linear import (
@@ -221,7 +221,7 @@ def _whole(box: np.ndarray, nuisances: NuisanceValues, count: int
     spreads = np.tile(nuisances.spreads, count)
     wide = np.full(len(spreads), np.inf)
     return (len(size), np.append(lower, -wide), np.append(upper, wide), np.append(size, spreads),
-            block_diag(np.zeros((len(size), len(size))), nuisances.precision))
+            scipy.linalg.block_diag(np.zeros((len(size), len(size))), nuisances.precision))
 
 
 def _whitenings(wrenches: Iterable[np.ndarray | None], scales: Iterable[np.ndarray],

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
 import numpy as np
-from scipy.ndimage import uniform_filter1d
+import scipy
 
 from quad_ident_ros.data.clocks import Clock
 from quad_ident_ros.data.inertial import FORCE, SUMMED
@@ -213,7 +213,8 @@ def _thinned(course: Course, states: np.ndarray, seen: np.ndarray, force: np.nda
     """Return every so many samples, means of the voltage and of the force, and all commands."""
     rows = len(course.t) // skip * skip
     if force is not None:   # about each sample that stays
-        force = uniform_filter1d(force, skip, axis=0, mode='nearest')[:rows:skip].copy()
+        force = scipy.ndimage.uniform_filter1d(force, skip, axis=0, mode='nearest')
+        force = force[:rows:skip].copy()
     drop = course.volt_drop[:rows].reshape(-1, skip).mean(axis=1)
     # A copy: an array with gaps would have the integrator compiled again.
     return (Course(course.t[:rows:skip].copy(), course.commands, drop, course.stamps,
@@ -229,7 +230,7 @@ def _across(force: np.ndarray, period: float, skip: int) -> np.ndarray:
     accelerometer that is off the centre of mass.
     """
     size = max(1, round(AIR / period))
-    return uniform_filter1d(force[:, :2], size, axis=0, mode='nearest')[::skip]
+    return scipy.ndimage.uniform_filter1d(force[:, :2], size, axis=0, mode='nearest')[::skip]
 
 
 def _starts(t: np.ndarray, seen: np.ndarray, period: float, count: int, step: int, warm: int

@@ -10,7 +10,7 @@ mistaken for noise here, nor noise with a memory for such a force.
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.optimize import nnls
+import scipy
 
 from quad_ident_ros.greybox.errors import difference, GROUPS
 from quad_ident_ros.greybox.flights import GAP, Track
@@ -129,8 +129,8 @@ def _split(lags: np.ndarray, spread: np.ndarray, period: float, white: float,
     alike = np.hstack([np.zeros((count, 1)), np.eye(count) / near[0], -np.eye(count) / near[1]])
     table = np.vstack([table * weight[:, None], ALIKE * alike])
     size = np.linalg.norm(table, axis=0)
-    share, _ = nnls(table / size, np.append((spread - white * period * lags) * weight,
-                                            np.zeros(count)))
+    share, _ = scipy.optimize.nnls(table / size, np.append(
+        (spread - white * period * lags) * weight, np.zeros(count)))
     share /= size
     apart = 1.0 - np.exp(-HORIZON / memory)
     return (share[0] + apart @ share[1:1 + count], white + apart @ share[1 + count:],

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.special import chdtri
+import scipy
 
 from quad_ident_ros.greybox.flights import Flight
 from quad_ident_ros.greybox.linear import Linear
@@ -149,4 +149,4 @@ def scatter_of(normal: Normal) -> np.ndarray:
         return np.ones(len(expected))
     centred = normal.scores - normal.scores.mean(axis=0)
     found = np.sum(centred ** 2, axis=0) * count / (count - 1) / expected
-    return np.where(found > chdtri(count - 1, CHANCE) / (count - 1), found, 1.0)
+    return np.where(found > scipy.special.chdtri(count - 1, CHANCE) / (count - 1), found, 1.0)

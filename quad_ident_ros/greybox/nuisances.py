@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.stats import f as fisher
+import scipy
 
 from quad_ident_ros.effects.registry import EFFECTS, GUSTS
 from quad_ident_ros.greybox.flights import inertial, Track
@@ -156,7 +156,7 @@ def are_alike(values: np.ndarray, spreads: np.ndarray, chance: float) -> bool:
 
     def rare(number: int, share: float) -> float:
         """Return the F statistic of so many places that a share of flights exceeds."""
-        return float(fisher.ppf(1.0 - share, number, number * (count - 1)))
+        return float(scipy.stats.f.ppf(1.0 - share, number, number * (count - 1)))
 
     if places == 1:
         return bool(shared[0] > rare(1, chance) * apart[0])

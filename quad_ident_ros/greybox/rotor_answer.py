@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import minimize
+import scipy
 
 from quad_ident_ros.data.commands import BY_SPEEDS
 from quad_ident_ros.data.quality.finding import Finding
@@ -134,9 +134,10 @@ def rotor_answer(record: FlightRecord) -> RotorAnswer | None:
     near = np.array(min(
         (rest_of(_moved(t[SPARSE], t, answer, delay), SPARSE), delay, lag)
         for delay in DELAYS for lag, answer in lagged)[1:])
-    best = minimize(lambda place: rest_of(acted(*place)), near, method='Nelder-Mead', options={
-        'initial_simplex': near + np.array([[0.0, 0.0], [0.005, 0.0], [0.0, 0.005]]),
-        'xatol': FINEST, 'fatol': np.inf, 'maxiter': 120}).x
+    best = scipy.optimize.minimize(
+        lambda place: rest_of(acted(*place)), near, method='Nelder-Mead', options={
+            'initial_simplex': near + np.array([[0.0, 0.0], [0.005, 0.0], [0.0, 0.005]]),
+            'xatol': FINEST, 'fatol': np.inf, 'maxiter': 120}).x
     delay, lag = float(best[0]), max(float(best[1]), 0.0)
     there = [acted(delay, lag), *beside]
     rest, values = _apart(speeds, there)

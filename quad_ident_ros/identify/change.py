@@ -15,7 +15,7 @@ from functools import lru_cache
 from typing import TypeAlias
 
 import numpy as np
-from scipy.stats import t as student
+import scipy
 
 from quad_ident_ros.gravity import GRAVITY
 from quad_ident_ros.identify.blocks import Blocks, blocks_of, PRIOR_DAMPING
@@ -177,7 +177,7 @@ def _lasts(blocks: Blocks, moves: Moves, reference: Reference, columns: Mapping[
 
 @lru_cache(1000)
 def _limit(rare: float, freedom: float) -> float:
-    return float(student.isf(rare, freedom))
+    return float(scipy.stats.t.isf(rare, freedom))
 
 
 def _change(output: str, last: Blocks, moves: Moves, reference: Reference, limit: float, hop: int

@@ -9,7 +9,7 @@ input allows that, by the factor that fits best.
 """
 
 import numpy as np
-from scipy.optimize import minimize_scalar
+import scipy
 
 from quad_ident_ros.identify.objective import Fitted, Objective
 from quad_ident_ros.identify.signals import Signal
@@ -68,7 +68,8 @@ def _double_pole(objective: Objective, guess: float) -> Fitted:
     def cost(mean: float) -> float:
         return min(objective.of_poles([2 * mean], [mean ** 2])[0][0], WORST)
 
-    found = minimize_scalar(cost, bounds=(guess - 3 * size, guess + 3 * size), method='bounded')
+    found = scipy.optimize.minimize_scalar(
+        cost, bounds=(guess - 3 * size, guess + 3 * size), method='bounded')
     return objective.fit(found.x, 0.0)
 
 

@@ -3,7 +3,7 @@
 """The one definition of the error between a measured and a fitted response."""
 
 import numpy as np
-from scipy.integrate import trapezoid
+import scipy
 
 UNITS = {'iae': 'unit s', 'ise': 'unit^2 s', 'itae': 'unit s^2', 'itse': 'unit^2 s^2',
          'nrmse_percent': '%', 'fit_percent': '%'}
@@ -24,10 +24,10 @@ def errors(t: np.ndarray, measured: np.ndarray, fitted: np.ndarray) -> dict[str,
     span = float(np.ptp(measured))
     rms = float(np.sqrt(np.mean(error ** 2)))
     return {
-        'iae': float(trapezoid(np.abs(error), t)),
-        'ise': float(trapezoid(error ** 2, t)),
-        'itae': float(trapezoid(t * np.abs(error), t)),
-        'itse': float(trapezoid(t * error ** 2, t)),
+        'iae': float(scipy.integrate.trapezoid(np.abs(error), t)),
+        'ise': float(scipy.integrate.trapezoid(error ** 2, t)),
+        'itae': float(scipy.integrate.trapezoid(t * np.abs(error), t)),
+        'itse': float(scipy.integrate.trapezoid(t * error ** 2, t)),
         'nrmse_percent': 100 * rms / span if span > 0 else np.nan,
         'fit_percent': 100 * (1 - float(np.linalg.norm(error)) / spread) if spread > 0 else np.nan,
     }

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import least_squares, minimize_scalar
+import scipy
 
 from quad_ident_ros.compiled import compiled
 from quad_ident_ros.identify.signals import Signal
@@ -79,7 +79,8 @@ def _first(task: '_Task', duration: float) -> tuple[np.ndarray, list[float]]:
         return residual @ residual
 
     start = min(FIRST_GRID, key=cost)
-    found = minimize_scalar(cost, bounds=(start - 1.5, start + 1.5), method='bounded')
+    found = scipy.optimize.minimize_scalar(cost, bounds=(start - 1.5, start + 1.5),
+                                           method='bounded')
     denominator = [np.sinh(found.x) / duration]
     return task.residual(denominator), denominator
 
@@ -91,10 +92,10 @@ def _third(task: '_Task', model: SecondOrder, duration: float) -> tuple[np.ndarr
         return [c1 + c, c0 + c1 * c, c0 * c]
 
     fastest = np.log(10 * task.samples)   # poles beyond leave no trace
-    best = min((least_squares(lambda point: task.residual(denominator(point)),
-                              [model.c1 * duration, model.c0 * duration ** 2, np.log(start)],
-                              x_scale='jac', max_nfev=STEPS) for start in THIRD_STARTS),
-               key=lambda found: found.cost)
+    best = min((scipy.optimize.least_squares(
+        lambda point: task.residual(denominator(point)),
+        [model.c1 * duration, model.c0 * duration ** 2, np.log(start)], x_scale='jac',
+        max_nfev=STEPS) for start in THIRD_STARTS), key=lambda found: found.cost)
     return task.residual(denominator(best.x)), denominator(best.x)
 
 

@@ -5,9 +5,7 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import solve_toeplitz
-from scipy.signal import lfilter
-from scipy.stats import chi2, f
+import scipy
 
 from quad_ident_ros.compiled import compiled
 from quad_ident_ros.identify.signals import Signal
@@ -81,7 +79,7 @@ def noise_model(residual: np.ndarray, measured: np.ndarray) -> tuple[float, ...]
     count = np.count_nonzero(measured)
     best, chosen = count * np.log(covariances[0]), ()
     for order in range(1, LONGEST_MEMORY + 1):
-        weights = solve_toeplitz(covariances[:order], covariances[1:order + 1])
+        weights = scipy.linalg.solve_toeplitz(covariances[:order], covariances[1:order + 1])
         variance = covariances[0] - weights @ covariances[1:order + 1]
         if not variance > 0:
             break
@@ -119,7 +117,7 @@ def _filtered(noise: tuple[float, ...], values: np.ndarray, measured: np.ndarray
     for lag in range(1, len(noise) + 1):
         known[lag:] &= measured[:-lag]
         known[lag - 1] = False
-    return lfilter([1.0, *noise], [1.0], values), known
+    return scipy.signal.lfilter([1.0, *noise], [1.0], values), known
 
 
 def _autocovariances(residual: np.ndarray, measured: np.ndarray, lags: int) -> np.ndarray:
@@ -148,7 +146,7 @@ def _whiteness(residual: np.ndarray, measured: np.ndarray, fitted: int) -> float
     correlations = covariances[1:] / covariances[0]
     # Of n pairs a correlation has the variance 1/n: with samples missing more than 1/count.
     statistic = count * (count + 2) * np.sum(correlations ** 2 / spaces * pairs / spaces)
-    return float(chi2.sf(statistic, max(1, lags - fitted)))
+    return float(scipy.stats.chi2.sf(statistic, max(1, lags - fitted)))
 
 
 def _independence(u: np.ndarray, residual: np.ndarray, measured: np.ndarray) -> float:
@@ -166,7 +164,9 @@ def _independence(u: np.ndarray, residual: np.ndarray, measured: np.ndarray) -> 
     if rank == 0 or freedom < 1:
         return 1.0
     rest = float(values @ values) - explained
-    return float(f.sf(explained / rank / (rest / freedom), rank, freedom)) if rest > 0 else 0.0
+    if rest <= 0:
+        return 0.0
+    return float(scipy.stats.f.sf(explained / rank / (rest / freedom), rank, freedom))
 
 
 @compiled

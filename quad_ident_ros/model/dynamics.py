@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.interpolate import CubicHermiteSpline
+import scipy
 
 from quad_ident_ros.data.cutting import without
 from quad_ident_ros.data.record import FlightRecord, INPUTS
@@ -239,7 +239,7 @@ def _guides(thetas: np.ndarray, sensors: Sensors, guide: np.ndarray, t: np.ndarr
     if len(fine) > len(t):
         q, rate = leads[..., :4], leads[..., 4:]
         slope = 0.5 * product(q, np.concatenate([np.zeros((*rate.shape[:-1], 1)), rate], axis=-1))
-        q = CubicHermiteSpline(t, q, slope, axis=1)(fine)
+        q = scipy.interpolate.CubicHermiteSpline(t, q, slope, axis=1)(fine)
         place = np.searchsorted(t, fine, side='right').clip(1, len(t) - 1)
         share = ((fine - t[place - 1]) / (t[place] - t[place - 1]))[:, None]
         rate = (1.0 - share) * rate[:, place - 1] + share * rate[:, place]

@@ -4,7 +4,7 @@
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import lsq_linear
+import scipy
 
 from quad_ident_ros.model.vehicle import Vehicle
 
@@ -43,7 +43,8 @@ def squared_speeds(vehicle: Vehicle, inputs: ArrayLike) -> np.ndarray:
         # Inputs are mostly held for many samples: each is solved for once.
         values, which = np.unique(inputs[outside], axis=0, return_inverse=True)
         for k, value in enumerate(values / scale):
-            found = lsq_linear(matrix / scale[:, None], value, bounds, method='bvls')
+            found = scipy.optimize.lsq_linear(matrix / scale[:, None], value, bounds,
+                                              method='bvls')
             if np.linalg.norm(found.fun) <= RESIDUAL * np.linalg.norm(value):
                 squared[outside[which.ravel() == k]] = found.x
     return squared

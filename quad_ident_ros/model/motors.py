@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq
+import scipy
 
 from quad_ident_ros import schema
 from quad_ident_ros.errors import InputError
@@ -138,7 +138,7 @@ def spread(motors: Motors, thrust_coefficient: float, thrust: float
 
     low, high = motors.minimum, motors.maximum
     if logarithm(motors, low) < math.log(thrust) < logarithm(motors, high):
-        place = brentq(lambda x: logarithm(motors, x) - math.log(thrust), low, high)
+        place = scipy.optimize.brentq(lambda x: logarithm(motors, x) - math.log(thrust), low, high)
     else:
         place = high    # of a map that does not reach it
     step = 1e-3 * (high - low)

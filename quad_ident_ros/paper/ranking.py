@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
-from scipy.stats import beta
+import scipy
 
 from quad_ident_ros.paper.study import SWARMS
 
@@ -57,8 +57,8 @@ class Comparison:
 
 def interval(wins, count):
     """Return the exact 95 % interval of a probability (Clopper, Pearson, Biometrika 26, 1934)."""
-    low = beta.ppf(OUTSIDE / 2, wins, count - wins + 1) if wins > 0 else 0.0
-    high = beta.ppf(1 - OUTSIDE / 2, wins + 1, count - wins) if wins < count else 1.0
+    low = scipy.stats.beta.ppf(OUTSIDE / 2, wins, count - wins + 1) if wins > 0 else 0.0
+    high = scipy.stats.beta.ppf(1 - OUTSIDE / 2, wins + 1, count - wins) if wins < count else 1.0
     return float(low), float(high)
 
 

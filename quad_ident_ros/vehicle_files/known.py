@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.linalg import block_diag
+import scipy
 
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.greybox.parameters import constants_within
@@ -30,7 +30,8 @@ def known_of(vehicle: Vehicle) -> tuple[tuple[str, ...], np.ndarray]:
     same = constants_within(names)
     apart = {name: std for name, std in stated(vehicle).items()
              if name not in names and name not in same}
-    return (*names, *apart), block_diag(matrix, np.diag(np.array(list(apart.values())) ** 2))
+    more = np.diag(np.array(list(apart.values())) ** 2)
+    return (*names, *apart), scipy.linalg.block_diag(matrix, more)
 
 
 def with_errors(changes: Sequence[Change], vehicle: Vehicle,

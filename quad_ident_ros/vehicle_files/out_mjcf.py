@@ -8,7 +8,7 @@ from itertools import permutations
 import math
 
 import numpy as np
-from scipy.spatial.transform import Rotation
+import scipy
 
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import Vehicle
@@ -322,7 +322,7 @@ def _write_body(edited: EditedXml, base: Base, model: Model, part: Part, body: B
                          wanted.sources['inertia'], size=size)
     elif turn := next((name for name in TURNS if name in inertial.attributes), ''):
         axes, diagonal = _principal(turned)
-        x, y, z, w = Rotation.from_matrix(rotation @ axes).as_quat()
+        x, y, z, w = scipy.spatial.transform.Rotation.from_matrix(rotation @ axes).as_quat()
         if turn == 'quat':
             edited.attribute(inertial, 'quat', [w, x, y, z], '1', wanted.sources['inertia'],
                              size=1.0)

@@ -48,6 +48,16 @@ def test_the_blocker_blocks():
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize('name', ['diagnose.diagnosis', 'identify.identify', 'cli.info', 'cli.fly',
+                                  'data.frame_watch', 'flight.fly'])
+def test_a_start_does_not_wait_for_what_only_some_work_needs(name):
+    """Statistics and filters of SciPy take half as long to load as all the rest."""
+    done = run(f'import quad_ident_ros.{name}; print(*sys.modules)')
+    assert done.returncode == 0, done.stderr[-2000:]
+    assert not {'scipy.stats', 'scipy.signal', 'scipy.interpolate'} & {*done.stdout.split()}
+
+
+@pytest.mark.slow
 def test_every_module_but_nodes_imports_without_ros():
     assert 'quad_ident_ros.identify.identify' in MODULES and len(MODULES) > 30
     # __main__ runs the command line on import: it is started below.

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import CubicSpline
+import scipy
 
 from quad_ident_ros.data.attitudes import attitudes_of
 from quad_ident_ros.data.quality.finding import Finding
@@ -79,7 +79,7 @@ def answer_of(record: FlightRecord) -> Answer | None:
                          np.where(told[:, None], commands, 0.0), reach)
     if not np.isfinite(shares).all():
         return None
-    spline, found = CubicSpline(np.arange(len(states)), states), None
+    spline, found = scipy.interpolate.CubicSpline(np.arange(len(states)), states), None
     for lag in np.argsort(shares)[:-PEAKS - 1:-1] - reach:
         one = _refined(spline, there, commands, told, float(lag))
         if one is not None and (found is None or one[2] > found[2]):
@@ -165,8 +165,8 @@ def _whole_lags(states: np.ndarray, commands: np.ndarray, reach: int) -> np.ndar
     return np.sum(cross * np.linalg.solve(gram, cross), axis=(1, 2)) / power
 
 
-def _refined(spline: CubicSpline, there: np.ndarray, commands: np.ndarray, told: np.ndarray,
-             lag: float) -> tuple[np.ndarray, np.ndarray, float] | None:
+def _refined(spline: 'scipy.interpolate.CubicSpline', there: np.ndarray, commands: np.ndarray,
+             told: np.ndarray, lag: float) -> tuple[np.ndarray, np.ndarray, float] | None:
     """
     Return what is found around a lag in samples, or None.
 

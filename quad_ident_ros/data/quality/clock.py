@@ -6,8 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.interpolate import CubicSpline
-from scipy.signal import fftconvolve
+import scipy
 
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.frames import best_reading
@@ -155,7 +154,8 @@ def _offset(grid: Grid, late: np.ndarray, early: np.ndarray, answers: bool = Fal
     whole = _whole_shift(late, early, grid.good, reach)
     if whole is None:
         return None
-    spline, slopes = CubicSpline(grid.t, early), np.gradient(late, grid.period, axis=0)
+    spline = scipy.interpolate.CubicSpline(grid.t, early)
+    slopes = np.gradient(late, grid.period, axis=0)
     width = round(WINDOW / grid.period)
     count = max(1, int(grid.good.sum() // width))
     found = []
@@ -183,7 +183,7 @@ def _whole_shift(late: np.ndarray, early: np.ndarray, good: np.ndarray, reach: i
 
     def along(now: np.ndarray, before: np.ndarray) -> np.ndarray:
         """Return the sums of one signal times another one so much before, (2 reach + 1, k)."""
-        sums = fftconvolve(now, before[::-1], axes=0)
+        sums = scipy.signal.fftconvolve(now, before[::-1], axes=0)
         padded = np.pad(sums, ((reach, reach), (0, 0)))
         return padded[middle:middle + 2 * reach + 1]
 
@@ -200,9 +200,9 @@ def _whole_shift(late: np.ndarray, early: np.ndarray, good: np.ndarray, reach: i
     return best - reach if alike[best] > SURE else None
 
 
-def _refined(t: np.ndarray, spline: CubicSpline, late: np.ndarray, slopes: np.ndarray,
-             start: float, period: float, rest_of: Callable[[np.ndarray], np.ndarray]
-             ) -> tuple[float, float] | None:
+def _refined(t: np.ndarray, spline: 'scipy.interpolate.CubicSpline', late: np.ndarray,
+             slopes: np.ndarray, start: float, period: float,
+             rest_of: Callable[[np.ndarray], np.ndarray]) -> tuple[float, float] | None:
     """
     Return the offset and its standard error in a window, or None.
 
@@ -238,7 +238,8 @@ def _refined(t: np.ndarray, spline: CubicSpline, late: np.ndarray, slopes: np.nd
     return offset, max(std, FINEST)
 
 
-def _displaced(grid: Grid, spline: CubicSpline, late: np.ndarray, offsets: np.ndarray) -> float:
+def _displaced(grid: Grid, spline: 'scipy.interpolate.CubicSpline', late: np.ndarray,
+               offsets: np.ndarray) -> float:
     """
     Return by how much at most the residuals, earlier or later, would move the offset, s.
 
@@ -253,7 +254,7 @@ def _displaced(grid: Grid, spline: CubicSpline, late: np.ndarray, offsets: np.nd
     gain = np.sum(model * target) / power
     slope = gain * (slope - model * np.sum(slope * model) / power)
     rest, reach = target - gain * model, round(ANSWER / grid.period)
-    scores = sum(fftconvolve(one, other[::-1]) for one, other in
+    scores = sum(scipy.signal.fftconvolve(one, other[::-1]) for one, other in
                  zip(slope.T, rest.T, strict=True))
     middle = len(rest) - 1
     most = np.abs(scores[max(0, middle - reach):middle + reach + 1]).max()
@@ -269,7 +270,7 @@ def _long_run(score: np.ndarray, lags: int) -> float:
     """Return the variance of the sum of a dependent series (Bartlett weights)."""
     total, most = np.sum(score ** 2), min(lags, len(score) - 1)
     if most > MANY_LAGS:
-        sums = fftconvolve(score, score[::-1])[len(score):len(score) + most]
+        sums = scipy.signal.fftconvolve(score, score[::-1])[len(score):len(score) + most]
         total += 2 * np.sum((1 - np.arange(1, most + 1) / (lags + 1)) * sums)
         most = 0
     for lag in range(1, most + 1):

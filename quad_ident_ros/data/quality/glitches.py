@@ -3,13 +3,7 @@
 """Short jumps, off and back: of the attitude that the gyro does not see, and of other states."""
 
 import numpy as np
-from scipy.ndimage import (
-    maximum_filter1d,
-    median_filter,
-    minimum_filter1d,
-    percentile_filter,
-    uniform_filter1d,
-)
+import scipy
 
 from quad_ident_ros.data.attitudes import attitudes_of
 from quad_ident_ros.data.differentiated import DIFFERENTIATED
@@ -124,7 +118,8 @@ def _unturned(t: np.ndarray, rates: np.ndarray, off: np.ndarray, attitudes: np.n
     some = np.arange(0, len(t) - 1, -(-len(t) // MANY))
     bias = np.median(_mismatch(t, rates, attitudes, some) / np.diff(t)[some, None], axis=0)
     # What sums and medians around them take: a long record has few samples that are off.
-    near = np.flatnonzero(maximum_filter1d(off.view(np.uint8), 4 * half + 9, mode='constant'))
+    near = np.flatnonzero(scipy.ndimage.maximum_filter1d(off.view(np.uint8), 4 * half + 9,
+                                                         mode='constant'))
     joined = np.diff(near) == 1
     steps = np.where(joined, np.diff(t[near]), 0.0)[:, None]
     beside = rates[near] - _median(rates[near], half)
@@ -149,9 +144,10 @@ def _reach(parts: np.ndarray, half: int) -> np.ndarray:
     """Return how far the sums (N, 3) of parts (N - 1, 3) spread around each sample, (N,)."""
     sums = np.vstack([np.zeros((1, 3)), np.cumsum(parts, axis=0)])
     # The noise of the attitude averages out; what the sums move by stays.
-    sums = uniform_filter1d(sums, half, axis=0, mode='nearest')
-    return np.linalg.norm(maximum_filter1d(sums, 2 * half + 3, axis=0, mode='nearest')
-                          - minimum_filter1d(sums, 2 * half + 3, axis=0, mode='nearest'), axis=-1)
+    sums = scipy.ndimage.uniform_filter1d(sums, half, axis=0, mode='nearest')
+    most, least = (of(sums, 2 * half + 3, axis=0, mode='nearest') for of in (
+        scipy.ndimage.maximum_filter1d, scipy.ndimage.minimum_filter1d))
+    return np.linalg.norm(most - least, axis=-1)
 
 
 def _beside(t: np.ndarray, values: np.ndarray, least: float) -> tuple[np.ndarray, np.ndarray]:
@@ -170,7 +166,7 @@ def _beside(t: np.ndarray, values: np.ndarray, least: float) -> tuple[np.ndarray
     noise = 1.4826 * np.median(np.abs(off), axis=0)
     size = np.linalg.norm(off, axis=-1)
     share, times = MOST
-    around = percentile_filter(size, share, 10 * half + 1, mode='nearest')
+    around = scipy.ndimage.percentile_filter(size, share, 10 * half + 1, mode='nearest')
     return size, size > np.maximum(times * around,
                                    max(FAR * float(np.sqrt(np.mean(noise ** 2))), least))
 
@@ -183,7 +179,7 @@ def _half(t: np.ndarray) -> int:
 
 def _median(values: np.ndarray, half: int) -> np.ndarray:
     """Return the running median (N, 3) of values over so many samples to each side."""
-    return np.stack([median_filter(column, 2 * half + 1, mode='nearest')
+    return np.stack([scipy.ndimage.median_filter(column, 2 * half + 1, mode='nearest')
                      for column in values.T], axis=1)
 
 
@@ -223,11 +219,12 @@ def _off(t: np.ndarray, attitudes: np.ndarray, rates: np.ndarray) -> tuple[np.nd
     sums = np.vstack([np.zeros((1, 3)), np.cumsum(apart, axis=0)])
     width = 2 * min(round(LONGEST / period), len(t) // 2) + 1
     # One column at a time, for which SciPy has the faster filter.
-    sums -= np.stack([median_filter(column, width, mode='nearest') for column in sums.T], axis=1)
+    sums -= np.stack([scipy.ndimage.median_filter(column, width, mode='nearest')
+                      for column in sums.T], axis=1)
     noise = 1.4826 * np.median(np.abs(sums), axis=0)
-    rates = uniform_filter1d(rates, max(1, width // 5), axis=0, mode='nearest')
-    change = (maximum_filter1d(rates, width, axis=0, mode='nearest')
-              - minimum_filter1d(rates, width, axis=0, mode='nearest'))
+    rates = scipy.ndimage.uniform_filter1d(rates, max(1, width // 5), axis=0, mode='nearest')
+    change = (scipy.ndimage.maximum_filter1d(rates, width, axis=0, mode='nearest')
+              - scipy.ndimage.minimum_filter1d(rates, width, axis=0, mode='nearest'))
     limit = max(FAR * float(np.sqrt(np.mean(noise ** 2))), LEAST)
     size = np.linalg.norm(sums, axis=-1)
     return size, size > limit + LATE * np.linalg.norm(change, axis=-1)

@@ -6,7 +6,7 @@ from dataclasses import replace
 import math
 
 import numpy as np
-from scipy.ndimage import uniform_filter1d
+import scipy
 
 from quad_ident_ros.data.inertial import FORCE, is_inertial, RATE
 from quad_ident_ros.data.quality.finding import Finding
@@ -151,8 +151,8 @@ def _struck(record: FlightRecord, thrust: np.ndarray, flying: np.ndarray) -> np.
                       BEGUN * float(np.median(jump[jump > 0.0])))
     jumps, speed = np.minimum(jump[1:-1], stays) > most, np.linalg.norm(velocity, axis=1)
     falls = speed[2:-1] < speed[1:-2]
-    near, far = (uniform_filter1d(jumps.astype(float), size, mode='constant') * size for size in (
-        5, 2 * round(BESIDE / record.period()) + 5))
+    near, far = (scipy.ndimage.uniform_filter1d(jumps.astype(float), size, mode='constant') * size
+                 for size in (5, 2 * round(BESIDE / record.period()) + 5))
     found[2:-1] = jumps & falls & flying[1:-2] & (far < near + 0.5)
     return found
 
@@ -204,7 +204,7 @@ def unflown(record: FlightRecord, vehicle: Vehicle) -> np.ndarray:
         return found
     weight = vehicle.mass * vehicle.gravity
     size = max(1, round(HIT / record.period()))
-    force = vehicle.mass * np.linalg.norm(uniform_filter1d(
+    force = vehicle.mass * np.linalg.norm(scipy.ndimage.uniform_filter1d(
         record.stack(*FORCE), size, axis=0, mode='nearest'), axis=1)
     flying = thrust > FLYING * float(np.quantile(thrust, STRONG))
     usual = min(float(np.median(thrust[flying])), weight)
@@ -243,8 +243,8 @@ def _moves_from(record: FlightRecord, first: int, last: int, end: int) -> int:
     most = min(end + 1 + round(BESIDE / record.period()), len(record))
     size = max(1, round(STEADY / record.period()))
     least = np.repeat(MOTION, 3)
-    sensors = uniform_filter1d(record.stack(*RATE, *FORCE)[first:most + size], size, axis=0,
-                               mode='nearest')
+    sensors = scipy.ndimage.uniform_filter1d(record.stack(*RATE, *FORCE)[first:most + size], size,
+                                             axis=0, mode='nearest')
     rest = sensors[:last + 1 - first]
     bound = np.maximum(BEGUN * rest.std(axis=0), least)
     moves = (np.abs(sensors - rest.mean(axis=0)) > bound).any(axis=1)[end + 1 - first:most - first]

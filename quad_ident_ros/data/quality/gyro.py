@@ -3,7 +3,7 @@
 """What the gyro reads where the vehicle stands: its bias, which records without attitude hide."""
 
 import numpy as np
-from scipy.ndimage import uniform_filter1d
+import scipy
 
 from quad_ident_ros.data.inertial import is_inertial, RATE
 from quad_ident_ros.data.quality.finding import Finding
@@ -40,7 +40,7 @@ def _at_rest(record: FlightRecord, rests: np.ndarray) -> np.ndarray:
     """Return the mean rates (K, 3), rad/s, of the windows in which the vehicle keeps still."""
     rates, period = record.stack(*RATE), record.period()
     size, short = (max(1, round(span / period)) for span in (WINDOW, AVERAGED))
-    smooth = uniform_filter1d(rates, short, axis=0, mode='nearest')
+    smooth = scipy.ndimage.uniform_filter1d(rates, short, axis=0, mode='nearest')
     found = []
     for first in range(0, len(record) - size + 1, size):
         part = slice(first, first + size)

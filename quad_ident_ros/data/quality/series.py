@@ -5,8 +5,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import maximum_filter1d
-from scipy.signal import fftconvolve
+import scipy
 
 from quad_ident_ros.data.attitudes import attitudes_of
 from quad_ident_ros.data.record import FlightRecord
@@ -53,8 +52,8 @@ class Grid:
         t = t[t <= record.t[-1]]
         after = np.clip(np.searchsorted(record.t, t), 1, len(record) - 1)
         wide = record.t[after] - record.t[after - 1] > GAP * period
-        bad = maximum_filter1d(wide.view(np.uint8), 2 * round(WIDTH / period) + 1,
-                               mode='constant') > 0
+        bad = scipy.ndimage.maximum_filter1d(wide.view(np.uint8), 2 * round(WIDTH / period) + 1,
+                                             mode='constant') > 0
         edge = max(1, round(WIDTH / period))
         good = ~bad
         good[:edge] = good[-edge:] = False
@@ -83,7 +82,7 @@ class Grid:
         window /= window.sum()
         padded = np.pad(signal, ((half, half), (0, 0)), mode='edge')
         if len(window) > DIRECT:
-            return fftconvolve(padded, window[:, None], 'valid', axes=0)
+            return scipy.signal.fftconvolve(padded, window[:, None], 'valid', axes=0)
         return np.stack([np.convolve(column, window, 'valid') for column in padded.T], axis=-1)
 
     def derivative(self, signal: np.ndarray) -> np.ndarray:
