@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Compilation of the inner loops to machine code, kept on disk between starts."""
 
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from functools import lru_cache
 import hashlib
+import itertools
 import os
 from pathlib import Path
 import stat
@@ -65,15 +66,42 @@ def _is_own_group(gid: int) -> bool:
         return False
 
 
-def _go_on_where_nothing_can_be_kept(cache: Any) -> None:
-    """Have a cache of numba leave out what a full disk or a missing folder does not take."""
-    save = cache.save_overload
+def _keep_whole(cache: Any) -> None:
+    """
+    Have a cache of numba keep what belongs together, whoever else writes, also after a kill.
 
-    def save_if_possible(*signature_and_code: Any) -> None:
-        with suppress(OSError):
+    Numba writes the index of a function before the code, under a number that it takes from the
+    index: two processes at once take the same one, and after a change of the source the code of
+    before has that number until the new one is written. A full disk or a missing folder takes
+    nothing, which is left out.
+    """
+    save, file = cache.save_overload, cache._cache_file
+
+    def save_alone(*signature_and_code: Any) -> None:
+        with suppress(OSError), _alone_in(cache.cache_path):
+            if not file._load_index():
+                for number in itertools.count(1):
+                    try:
+                        os.remove(file._data_path(file._data_name(number)))
+                    except FileNotFoundError:
+                        break
             save(*signature_and_code)
 
-    cache.save_overload = save_if_possible
+    cache.save_overload = save_alone
+
+
+@contextmanager
+def _alone_in(folder: str) -> Iterator[None]:
+    """Let one process at a time write to a folder, where its file system knows of locks."""
+    os.makedirs(folder, exist_ok=True)
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        with suppress(ImportError, OSError):
+            import fcntl
+            fcntl.flock(handle, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(handle)
 
 
 FUNCTIONS: list[Any] = []
@@ -118,7 +146,7 @@ def compiled(function: Any = None, *, fused: bool = False, reordered: bool = Fal
                                                                   ).parent:
             raise RuntimeError(f'others can write to {folder}')
         file._source_stamp = (file._source_stamp, STAMP)
-        _go_on_where_nothing_can_be_kept(made._cache)
+        _keep_whole(made._cache)
     except (AttributeError, RuntimeError):
         made = numba.njit(**options)(function)
     FUNCTIONS.append(made)

@@ -7,6 +7,7 @@ from pathlib import Path
 import shutil
 import subprocess
 import sys
+import time
 
 from full_disk import file_size_limit
 import numba
@@ -73,6 +74,75 @@ def test_a_full_disk_keeps_nothing_and_ends_nothing(package, tmp_path):
             assert start(package) == [7.0, 0]
     assert start(package) == [7.0, 0]
     assert start(package) == [7.0, 1]
+
+
+IN_BETWEEN = """
+import sys
+from numba.core.caching import IndexDataCacheFile
+from quad_ident_ros.model.inner import inner
+
+save = IndexDataCacheFile._save_index
+
+
+def save_when_told(self, overloads):
+    print('it knows what there is', flush=True)
+    sys.stdin.readline()
+    save(self, overloads)
+
+
+if '--when-told' in sys.argv:
+    IndexDataCacheFile._save_index = save_when_told
+for number in (2, 2.0) if '--both' in sys.argv else (2,) if '--when-told' in sys.argv else (2.0,):
+    inner(number)
+print(sum(inner.stats.cache_hits.values()))
+"""
+
+
+def waits_for_a_lock(process):
+    """Return whether a process waits for a lock on a file, as Linux tells."""
+    lines = [line.split() for line in Path('/proc/locks').read_text().splitlines()]
+    return any('->' in words and str(process.pid) in words for words in lines)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform != 'linux', reason='others do not tell who waits for a lock')
+def test_processes_that_compile_at_once_keep_what_each_of_them_compiled(package):
+    """Nodes that start together took the same number for different code, and lost some."""
+    def begin(*words):
+        return subprocess.Popen([sys.executable, '-c', IN_BETWEEN, *words], text=True,
+                                cwd=package.parent, stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                                env={**os.environ, 'PYTHONPATH': str(package.parent)})
+
+    first = begin('--when-told')
+    assert first.stdout.readline() == 'it knows what there is\n'
+    second = begin()
+    while second.poll() is None and not waits_for_a_lock(second):
+        time.sleep(0.02)
+    assert [one.communicate('\n')[0] for one in (first, second)] == ['0\n', '0\n']
+    assert begin('--both').communicate()[0] == '2\n'
+
+
+KILLED = """
+import os, runpy
+from numba.core.caching import IndexDataCacheFile
+
+save = IndexDataCacheFile._save_data
+IndexDataCacheFile._save_data = lambda self, name, data: (
+    os._exit(1) if 'outer' in name else save(self, name, data))
+runpy.run_module('quad_ident_ros.model.outer')
+"""
+
+
+@pytest.mark.slow
+def test_a_kill_while_code_is_written_brings_none_of_before_back(package):
+    """The index was new and the code that it names old: it was run after that for good."""
+    assert start(package) == [7.0, 0]
+    (package / 'model' / 'outer.py').write_text(OUTER.replace('+ 1.0', '+ 5.0'))
+    killed = subprocess.run([sys.executable, '-c', KILLED], cwd=package.parent, check=False,
+                            env={**os.environ, 'PYTHONPATH': str(package.parent)})
+    assert killed.returncode == 1
+    assert start(package) == [11.0, 0]
+    assert start(package) == [11.0, 1]
 
 
 @pytest.mark.slow
