@@ -4,9 +4,9 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+import fcntl
 from functools import lru_cache
 import hashlib
-import itertools
 import os
 from pathlib import Path
 import stat
@@ -75,16 +75,15 @@ def _keep_whole(cache: Any) -> None:
     before has that number until the new one is written. A full disk or a missing folder takes
     nothing, which is left out.
     """
-    save, file = cache.save_overload, cache._cache_file
+    save, known, folder = cache.save_overload, cache._cache_file._load_index, cache.cache_path
+    mine = Path(cache._cache_file._index_name).stem + '.'
 
     def save_alone(*signature_and_code: Any) -> None:
-        with suppress(OSError), _alone_in(cache.cache_path):
-            if not file._load_index():
-                for number in itertools.count(1):
-                    try:
-                        os.remove(file._data_path(file._data_name(number)))
-                    except FileNotFoundError:
-                        break
+        with suppress(OSError), _alone_in(folder):
+            if not known():
+                for name in os.listdir(folder):
+                    if name.startswith(mine):
+                        os.remove(os.path.join(folder, name))
             save(*signature_and_code)
 
     cache.save_overload = save_alone
@@ -96,11 +95,12 @@ def _alone_in(folder: str) -> Iterator[None]:
     os.makedirs(folder, exist_ok=True)
     handle = os.open(folder, os.O_RDONLY)
     try:
-        with suppress(ImportError, OSError):
-            import fcntl
+        with suppress(OSError):
             fcntl.flock(handle, fcntl.LOCK_EX)
         yield
     finally:
+        with suppress(OSError):     # a child that was forked meanwhile has the handle, too
+            fcntl.flock(handle, fcntl.LOCK_UN)
         os.close(handle)
 
 

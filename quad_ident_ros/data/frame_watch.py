@@ -21,6 +21,14 @@ class FrameWatch:
     """Finds velocities, rates, attitudes and positions in other frames among the latest rows."""
 
     def __init__(self) -> None:
+        # What a look needs loads for half a second or more, in which no message shall wait.
+        turn = np.arange(0.0, SPAN, PERIOD)
+        circle = {'px': np.cos(turn), 'py': np.sin(turn), 'pz': np.sin(3.0 * turn),
+                  'vx': -np.sin(turn), 'vy': np.cos(turn), 'vz': 3.0 * np.cos(3.0 * turn),
+                  'qw': np.cos(0.5 * turn), 'qx': 0.0 * turn, 'qy': 0.0 * turn,
+                  'qz': np.sin(0.5 * turn), 'wx': 0.0 * turn, 'wy': 0.0 * turn,
+                  'wz': 0.0 * turn + 1.0, 'ax': 0.0 * turn, 'ay': 0.0 * turn, 'az': 0.0 * turn}
+        _wrong_in(FlightRecord(turn, circle, {}))
         self._rows: deque[Row] = deque()
         self._looked_at = 0     # stamp of the newest row of the last look, ns
         self._is_new = False
@@ -58,8 +66,12 @@ class FrameWatch:
     def _found(self, columns: Sequence[str]) -> str:
         stamps = np.array([row[0] for row in self._rows], np.int64)
         table = np.array([row[1] for row in self._rows])
-        record = FlightRecord((stamps - stamps[0]) * 1e-9, record_columns(columns, table), {})
-        with np.errstate(all='ignore'):     # values too large to judge
-            found = [one for check in frames.CHECKS for one in check(record, None)
-                     if one.severity == 'error']
-        return f'{found[0].where}: {found[0].message}; {found[0].remedy}' if found else ''
+        return _wrong_in(FlightRecord((stamps - stamps[0]) * 1e-9,
+                                      record_columns(columns, table), {}))
+
+
+def _wrong_in(record: FlightRecord) -> str:
+    with np.errstate(all='ignore'):     # values too large to judge
+        found = [one for check in frames.CHECKS for one in check(record, None)
+                 if one.severity == 'error']
+    return f'{found[0].where}: {found[0].message}; {found[0].remedy}' if found else ''

@@ -88,8 +88,8 @@ def _level(rotation: np.ndarray, force: np.ndarray) -> np.ndarray:
 
 def _quaternions(first: np.ndarray, relative: np.ndarray) -> np.ndarray:
     """Return quaternions (N, 4) that begin with a rotation (3, 3) and turn on as relative ones."""
-    rotation = scipy.spatial.transform.Rotation
-    turned = rotation.from_matrix(first) * rotation.from_quat(np.roll(relative, -1, axis=1))
+    turned = (scipy.spatial.transform.Rotation.from_matrix(first)
+              * scipy.spatial.transform.Rotation.from_quat(np.roll(relative, -1, axis=1)))
     return np.roll(turned.as_quat(), 1, axis=1)
 
 

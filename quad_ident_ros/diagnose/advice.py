@@ -32,11 +32,11 @@ def not_shown(selection: Selection, causes: tuple, verdict: Verdict, rules: Rule
 
 def cannot_show(flights: Sequence[Flight], verdict: Verdict) -> tuple[str, ...]:
     """Return the names of effects that no flights with commands like these would show."""
-    named, hidden = {*verdict.sure, *verdict.undetermined}, unobservable(flights)
+    named, unseen = {*verdict.sure, *verdict.undetermined}, unobservable(flights)
     if not any(flight.levelled for flight in flights):
-        return hidden
+        return unseen
     scales = {NAMES[column].partition('.')[0] for column in SCALES}
-    return (*hidden, *(name for name in EFFECTS if name in scales - named))
+    return (*unseen, *(name for name in EFFECTS if name in scales - named))
 
 
 def fly_next(selection: Selection, flights: list, vehicle: Vehicle, z: np.ndarray,
@@ -72,7 +72,7 @@ def by_input_errors(judged: Judgement) -> tuple[dict, ...]:
     rows = []
     for cause in judged.model.effects:
         ranges = [f'{NAMES[column].split(".")[1]} {least:.2g} to {most:.2g}'
-                  for column, (least, most) in judged.command_errors.items()
+                  for column, (least, most) in judged.by_commands.items()
                   if column in cause.columns]
         so = '; it stays in the model in its place and is not named'
         if ranges:

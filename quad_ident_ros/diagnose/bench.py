@@ -235,7 +235,7 @@ class Bench:
             found.append(gaps.ends(self.tracks[k], self.vehicle, refit.z + here, self.horizon))
         return (*found, model.ends[-1])
 
-    def command_errors(self, model: Model) -> dict[int, tuple[float, float]]:
+    def by_commands(self, model: Model) -> dict[int, tuple[float, float]]:
         """Return {column: (least, most)} of what errors of the commands alone may have made."""
         if not input_errors.gains(model.estimate.columns):
             return {}
@@ -245,11 +245,11 @@ class Bench:
         return {column: (least, most) for column, (least, most) in found.items()
                 if column in clear and least <= null[column] <= most}
 
-    def stands_in(self, model: Model, cause: Candidate, command_errors: Collection[int]) -> bool:
-        """Return whether most of what an effect clearly changes is held or the commands'."""
+    def stands_in(self, model: Model, cause: Candidate, by_commands: Collection[int]) -> bool:
+        """Return whether errors of the commands or bounds made most of what an effect changes."""
         clear = self.clear_columns(model, cause)
         held = columns_at_bounds(cause, model.z, self.vehicle, self.rules)
-        return len(clear & {*command_errors, *held}) > self.rules.stand_in * len(clear)
+        return len(clear & {*by_commands, *held}) > self.rules.stand_in * len(clear)
 
     def clear_columns(self, model: Model, cause: Candidate) -> set[int]:
         """Return the columns of an effect that clearly differ from none."""

@@ -25,22 +25,22 @@ class Judgement:
     What was judged of a Selection.
 
     model: all effects that are present; material: those of them that matter; stand_ins: those that
-    would, but have most of their parameters at bounds or in command_errors; fitted: the same model
-    with the gusts of each flight in its vectors, which `model` and `without` leave out;
-    command_errors {column: (least, most)}: what errors of the commands may have made; supports
-    {candidate: Support} and
-    probability {effect: of being present}; without {candidate: Model without it}; before: the
-    Ends of the nominal vehicle with the nuisances of each flight; left_out: those of each flight
-    by the fitted model of the others; noises: the Noise of each flight, noise: its {group: gap};
-    remaining: {group: gap beyond tolerance}; unexplained: those of them beyond the error of form
-    that the effects named may have.
+    would, but have most of their parameters at bounds, or where errors of the commands may have
+    put them; fitted: the same model with the gusts of each flight in its vectors, which `model`
+    and `without` leave out; by_commands {column: (least, most)}: where errors of the commands
+    alone may have put a parameter; supports {candidate: Support} and probability {effect: of
+    being present}; without {candidate: Model without it}; before: the Ends of the nominal vehicle
+    with the nuisances of each flight; left_out: those of each flight by the fitted model of the
+    others; noises: the Noise of each flight, noise: its {group: gap}; remaining: {group: gap
+    beyond tolerance}; unexplained: those of them beyond the error of form that the effects named
+    may have.
     """
 
     model: Model
     material: tuple
     stand_ins: tuple
     fitted: Model
-    command_errors: dict[int, tuple[float, float]]
+    by_commands: dict[int, tuple[float, float]]
     supports: dict
     probability: dict
     without: dict
@@ -82,7 +82,7 @@ def judge(bench: Bench) -> Judgement:
                  for cause, one in alone.items()}, rules).items():
             # Beside effects that do not matter it may show more clearly, or less.
             supports[cause] = max(supports.get(cause, support), support,
-                                 key=lambda each: presence(each, rules))
+                                  key=lambda each: presence(each, rules))
         idle = [removed for removed, one in smaller.items()
                 if not matters(model.gap, one.gap, before, noise, rules,
                                clear({cause: supports[cause] for cause in removed},
@@ -96,16 +96,16 @@ def judge(bench: Bench) -> Judgement:
     # Where forms gave way to the usual ones, these stand for their effects.
     there = {cause.effect: cause for cause in (*full.effects, *model.effects)}
     supports = {cause: support for cause, support in supports.items()
-               if there.get(cause.effect) is cause}
+                if there.get(cause.effect) is cause}
     present = probabilities(bench.selection.posterior, supports, rules)
     absent = tuple(cause for cause in there.values() if present[cause.effect] < rules.present)
     if set(model.effects) <= set(absent) and closes_half(model.gap, before, noise, rules):
         model = _fewest(bench, model, before, noise, present)
         absent = tuple(cause for cause in absent if cause not in model.effects)
     # What needs values that no vehicle has does the work of something else, which it stands for.
-    command_errors = bench.command_errors(model)
+    by_commands = bench.by_commands(model)
     stand_ins = tuple(cause for cause in model.effects
-                      if cause not in absent and bench.stands_in(model, cause, command_errors))
+                      if cause not in absent and bench.stands_in(model, cause, by_commands))
     present |= {cause.effect: rules.prior_of(cause.effect) for cause in stand_ins}
     material = tuple(cause for cause in model.effects if cause not in {*absent, *stand_ins})
     if set(model.effects) <= set(full.effects):
@@ -128,7 +128,7 @@ def judge(bench: Bench) -> Judgement:
     without = {cause: bench.without_gusts(one) for cause, one in without.items()}
     ends = _nominal_ends(bench, final)
     return Judgement(final, in_forms_of(final.effects, material),
-                     in_forms_of(final.effects, stand_ins), fitted, command_errors,
+                     in_forms_of(final.effects, stand_ins), fitted, by_commands,
                      _by_form(final, supports), present, _by_form(final, without),
                      ends, bench.left_out(fitted), noises, noise_gaps,
                      remaining(final.gap, noise, rules),

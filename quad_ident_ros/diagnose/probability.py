@@ -13,7 +13,7 @@ from quad_ident_ros.diagnose.rules import Rules
 @dataclass(frozen=True)
 class Support:
     """
-    What an effect weighs, by what is lost when it is taken out and everything else is refitted.
+    How well flights support an effect: what is lost without it, everything else refitted.
 
     contribution: the share of the closable gap that is lost; stability: how steadily it helps,
     see judgement.stability; explained: the share of its contribution that its form explains;

@@ -84,7 +84,8 @@ class Form:
     apart: parameters that do what another effect does, each of them a term that errs by itself,
     for how wrong a law may be is no matter of names; needs_reference: it shows only against a
     position, a velocity or an attitude, not in accelerometer and gyro alone; needs_height: it
-    shows only where the height was measured; same_motion, separated_by: as of Effect.
+    shows only where the height was measured; same_motion, separated_by: as of
+    Effect, of this form.
     """
 
     name: str
@@ -120,7 +121,7 @@ class Effect:
     with one of it only one is named; per_flight: how much each of its usual form's parameters
     usually differs from one flight to the next, empty where none does; needs_air: it is felt only
     by what depends on the velocity of the air; same_motion: pairs of constants that move a vehicle
-    alike, for all of which it stands; separated_by: what measurement tells them apart.
+    alike, for all of which it stands; separated_by: what measurement distinguishes them.
     """
 
     name: str

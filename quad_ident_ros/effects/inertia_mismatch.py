@@ -42,4 +42,4 @@ EFFECT = Effect(
     same_motion=(('inertia about x', 'arms along y'), ('inertia about y', 'arms along x'),
                  ('inertia about z', 'torque coefficient')),
     separated_by='a ruler for the arms, a pendulum for the inertia, a thrust stand for the torque '
-            'coefficient')
+                 'coefficient')

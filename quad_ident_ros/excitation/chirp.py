@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Chirp: a sine whose frequency sweeps."""
 
-
 import scipy
 
 from quad_ident_ros import schema

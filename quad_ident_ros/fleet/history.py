@@ -273,8 +273,8 @@ def _probability(model: Regression, chosen: Sequence[Term], term: Term) -> tuple
     lasting = kinds != SINGLE
     gains = model.gains(rest)
     other = gains[lasting & (kinds != kinds[term.number])]
-    total = scipy.special.logsumexp
-    share = np.exp(total(other) - total(gains[lasting])) if other.size else 0.0
+    share = np.exp(scipy.special.logsumexp(other)
+                   - scipy.special.logsumexp(gains[lasting])) if other.size else 0.0
     return model.probability(np.flatnonzero(lasting), chosen, term, without), float(share)
 
 

@@ -164,7 +164,7 @@ def _independence(u: np.ndarray, residual: np.ndarray, measured: np.ndarray) -> 
     if rank == 0 or freedom < 1:
         return 1.0
     rest = float(values @ values) - explained
-    if rest <= 0:
+    if not rest > 0:
         return 0.0
     return float(scipy.stats.f.sf(explained / rank / (rest / freedom), rank, freedom))
 

@@ -168,7 +168,7 @@ def _leave_compilation():
     """
     End the process where a thread of it still compiles: nothing can interrupt that.
 
-    All else is closed by now, and numba keeps a function on disk in one step, whole or not at all.
+    All else is closed by now, and a function that is not kept whole is compiled again.
     """
     if any(thread.daemon and thread.is_alive() for thread in threading.enumerate()
            if thread is not threading.current_thread()):

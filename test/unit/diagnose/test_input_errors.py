@@ -76,7 +76,7 @@ def test_what_errors_may_have_made_is_said_with_its_range():
     columns = tuple(INDEX[f'inertia_mismatch.factor_{axis}'] for axis in 'xyz')
     cause = Candidate('inertia_mismatch', 'factors', columns)
     judged = SimpleNamespace(model=SimpleNamespace(effects=(cause,)), stand_ins=(cause,),
-                             command_errors={columns[0]: (0.6, 4.1)})
+                             by_commands={columns[0]: (0.6, 4.1)})
     [one] = by_input_errors(judged)
     assert one['where'] in EFFECTS and 'factor_x 0.6 to 4.1' in one['message']
     assert 'is not named' in one['message'] and 'factor_y' not in one['message']

@@ -64,7 +64,7 @@ def test_sizes_are_beside_the_greatest_effect():
 
 def test_companions_are_the_others_that_clearly_contribute():
     supports = {'a': of(0.5, 0.9), 'b': of(0.3, 0.9), 'c': of(0.3, 0.9, stability=2.0),
-               'd': of(0.05, 0.9)}
+                'd': of(0.05, 0.9)}
     found = beside_others(supports, RULES)
     assert [found[name].companions for name in 'abcd'] == [1, 1, 2, 2]
 
