@@ -3,6 +3,9 @@
 """Wrong frames, reported while a vehicle flies."""
 
 from dataclasses import replace
+from pathlib import Path
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -14,6 +17,26 @@ from quad_ident_ros.model.attitude import conjugate, rotate
 
 COLUMNS = raw_columns(('pose', 'twist'))
 FLIGHTS = load_experiment('closed_loop')
+
+ROOT = Path(__file__).resolve().parents[3]
+FIRST_LOOK = f"""
+import sys
+sys.path.insert(0, {str(ROOT)!r})
+import numpy as np
+from quad_ident_ros.data.frame_watch import FrameWatch
+from quad_ident_ros.data.topics import raw_columns
+
+t = np.arange(0.0, 8.0, 0.01)
+zero, turn = 0.0 * t, 0.8 * t
+table = np.stack([np.cos(t), np.sin(t), zero, np.cos(turn / 2), zero, zero, np.sin(turn / 2),
+                  -np.sin(t), np.cos(t), zero, zero, zero, zero + 0.8], axis=1)
+rows = [(round(1e9 * when), tuple(row)) for when, row in zip(t, table, strict=True)]
+watch = FrameWatch()
+before = {{*sys.modules}}
+watch.add(rows)
+assert watch.look(raw_columns(('pose', 'twist')))    # a twist in the world
+print(*({{*sys.modules}} - before))
+"""
 
 
 def rows_of(record, in_world=False, first=10 ** 9):
@@ -64,3 +87,10 @@ def test_it_is_over_once_the_flight_is_right_or_the_clock_begins_anew():
     assert watch.look(COLUMNS) == ''    # nothing came since
     watch.add(rows_of(record, first=0))
     assert watch.look(COLUMNS) == ''
+
+
+@pytest.mark.slow
+def test_the_first_look_loads_nothing_while_messages_wait():
+    done = subprocess.run([sys.executable, '-c', FIRST_LOOK], capture_output=True, text=True,
+                          check=True)
+    assert done.stdout.split() == []

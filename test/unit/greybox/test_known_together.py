@@ -35,3 +35,14 @@ def test_what_flights_would_rather_have_counts_as_an_error():
     held, whole = with_constants(known, np.array([1.0]), np.ones(2))
     assert held[0, 0] == pytest.approx(1.0 / weight)
     assert whole[0, 0] == pytest.approx(0.4 ** 2, rel=0.01)
+
+
+def test_what_scatters_more_than_noise_widens_columns_and_constants_alike():
+    # Blocks of the first column scatter nine times as white noise, those of the constant not.
+    weight, count = 1e4, 8
+    scores = np.zeros((count, 2))
+    scores[:, 0] = np.sqrt(9.0 * weight * (count - 1)) / count * (-1.0) ** np.arange(count)
+    known = Normal(weight * np.eye(2), np.zeros(2), 0.0, scores)
+    held, whole = with_constants(known, np.array([1e3]), np.ones(2))
+    assert held == pytest.approx(np.array([[9.0 / weight]]))
+    assert whole == pytest.approx(9.0 / weight * np.eye(2), rel=1e-6)
