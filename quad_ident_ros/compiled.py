@@ -72,20 +72,34 @@ def _keep_whole(cache: Any) -> None:
 
     Numba writes the index of a function before the code, under a number that it takes from the
     index: two processes at once take the same one, and after a change of the source the code of
-    before has that number until the new one is written. A full disk or a missing folder takes
-    nothing, which is left out.
+    before has that number until the new one is written. It does not wait for the disk, either: it
+    would read what a power cut leaves, empty or cut short, as it is. A full disk or a missing
+    folder takes nothing, which is left out.
     """
-    save, known, folder = cache.save_overload, cache._cache_file._load_index, cache.cache_path
-    mine = Path(cache._cache_file._index_name).stem + '.'
+    file, save, folder = cache._cache_file, cache.save_overload, cache.cache_path
+    known, read, mine = file._load_index, file._load_data, Path(file._index_name).stem + '.'
+
+    def index_if_whole() -> Any:
+        # What is not whole, as after the power was cut, may raise whatever pickles may.
+        with suppress(Exception):
+            return known()
+        return {}
+
+    def code_if_whole(name: str) -> Any:
+        try:
+            return read(name)
+        except Exception as error:
+            raise FileNotFoundError(name) from error    # numba then compiles again
 
     def save_alone(*signature_and_code: Any) -> None:
         with suppress(OSError), _alone_in(folder):
-            if not known():
+            if not index_if_whole():
                 for name in os.listdir(folder):
                     if name.startswith(mine):
                         os.remove(os.path.join(folder, name))
             save(*signature_and_code)
 
+    file._load_index, file._load_data = index_if_whole, code_if_whole
     cache.save_overload = save_alone
 
 

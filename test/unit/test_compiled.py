@@ -178,6 +178,18 @@ def test_a_kill_while_code_is_written_brings_none_of_before_back(package):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize('kind', ['nbi', 'nbc'])
+@pytest.mark.parametrize('size', [0, 100])
+def test_what_a_power_cut_leaves_is_compiled_again(package, kind, size):
+    """Every later start ended with a traceback, until someone deleted the files."""
+    assert start(package) == [7.0, 0]
+    cut, = (package / 'model').rglob(f'*outer*.{kind}')
+    cut.write_bytes(cut.read_bytes()[:size])
+    assert start(package) == [7.0, 0]
+    assert start(package) == [7.0, 1]
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize('whose', ['everybody', 'another', 'link'])
 def test_no_code_is_taken_from_a_folder_into_which_others_write(package, tmp_path, whose):
     # Numba keeps code as pickles, which can do anything when they are loaded.
