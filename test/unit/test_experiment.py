@@ -322,6 +322,7 @@ places = st.sampled_from([
     *(('runs', 1, 'inputs', 'U3', key) for key in ('type', 'amplitude', 'time', 'file'))])
 
 
+@pytest.mark.slow
 @FAST
 @given(place=places, value=anything)
 def test_any_value_gives_an_experiment_or_an_input_error(tmp_path, place, value):

@@ -28,6 +28,7 @@ def threads(module, **variables):
     return int(done.stdout)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not sys.platform.startswith('linux') or len(os.sched_getaffinity(0)) < 2,
                     reason='threads are counted in /proc, on two cores or more')
 @pytest.mark.parametrize('module', ['quad_ident_ros.cli.main', 'quad_ident_ros.nodes'])

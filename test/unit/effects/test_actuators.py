@@ -63,6 +63,7 @@ def test_a_delay_of_whole_samples_moves_the_commands_by_these(count):
     assert np.abs(found - expected).max() < 1e-10
 
 
+@pytest.mark.slow
 @FAST
 @given(st.floats(0, 0.3), st.lists(st.floats(1e-3, 0.1), min_size=2, max_size=20),
        st.integers(0, 1000))

@@ -250,6 +250,7 @@ anything = st.recursive(
                                                                 max_size=2), max_leaves=4)
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=300)
 @given(st.sampled_from(sorted(EXCITATIONS)), st.dictionaries(
     st.sampled_from(['amplitude', 'time', 'width', 'clock', 'order', 'seed', 'low', 'high',

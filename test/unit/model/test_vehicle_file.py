@@ -242,6 +242,7 @@ def vehicles(draw):
         draw(st.none() | motors(mass * gravity / count, thrust)))
 
 
+@pytest.mark.slow
 @FAST
 @given(vehicles())
 def test_a_written_vehicle_is_read_as_it_was(tmp_path, vehicle):
@@ -511,6 +512,7 @@ def test_any_value_gives_a_vehicle_or_an_input_error(changes):
         assert np.isfinite([vehicle.mass, *vehicle.inertia, vehicle.arm_length]).all()
 
 
+@pytest.mark.slow
 @FAST
 @given(st.text(max_size=60) | anything.map(lambda value: yaml.safe_dump(value)))
 @example('? [a]\n: 1')

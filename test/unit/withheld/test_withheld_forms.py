@@ -442,6 +442,7 @@ def circle(t):
             'x_ddot': np.array([-c, -s, 0.0]), 'yaw': 0.3, 'yaw_dot': 0.0}
 
 
+@pytest.mark.slow
 def test_a_flight_with_take_off_stands_climbs_and_lands():
     path = Grounded(SimpleNamespace(update=circle), 20.0, 0.07)
     assert path.update(0.5)['idle'] and path.update(19.9)['idle']

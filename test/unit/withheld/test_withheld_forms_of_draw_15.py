@@ -47,6 +47,7 @@ def test_hot_windings_slow_a_motor_down():
     assert time() == pytest.approx(motor.COLD + motor.GROWS, rel=1e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('form', ['multiplexed', 'buffered'])
 def test_a_line_has_its_mean_delay(form):
     line, waits = made('actuation_delay', form, 2.0), []
@@ -140,6 +141,7 @@ def test_a_balloon_carries_and_has_to_be_moved():
     assert part.wrench(instant())[0][0] == pytest.approx(-part.MOVED * carried)
 
 
+@pytest.mark.slow
 def test_a_winch_brings_a_load_down_and_back():
     part = made('mass_offset', 'winched', 3.0)
     times = np.arange(0.0, 50.0, 0.001)

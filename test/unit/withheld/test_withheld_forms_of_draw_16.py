@@ -146,6 +146,7 @@ def test_a_vehicle_that_leans_loses_its_cushion():
     assert gains[1] / gains[0] == pytest.approx(np.exp(-1.0), rel=0.03)
 
 
+@pytest.mark.slow
 def test_of_two_packs_the_fuller_one_does_all_until_the_load_is_high():
     battery = made('battery_sag', 'parallel', 1.0)
     shown = []

@@ -42,6 +42,7 @@ def test_a_large_rise_comes_in_pieces_and_a_small_one_or_a_fall_does_not():
     assert np.sum(np.diff(pieces.astype(int)) == 1) >= 2 and rise[99] < 0.5 < 0.7 < rise[399]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(('form', 'exact'), [('polled', 0.01), ('governed', 0.05)])
 def test_a_line_that_waits_has_its_mean_delay(form, exact):
     line, waits = made('actuation_delay', form, 2.0), []

@@ -47,6 +47,7 @@ def test_one_motor_brakes_by_what_the_others_need_and_all_together_coast():
     assert 1.0 - rising / HOVER == pytest.approx(np.full(4, 0.1 * np.exp(-1.0)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(('form', 'exact'), [('relayed', 0.05), ('probing', 0.05)])
 def test_a_line_through_a_net_has_its_mean_delay(form, exact):
     line, waits = made('actuation_delay', form, 2.0), []
@@ -316,6 +317,7 @@ def test_magnets_lose_for_good_what_the_hottest_moment_takes():
     assert loss[4] > loss[3] and part.torque(now) == pytest.approx(part.gain(now))
 
 
+@pytest.mark.slow
 def test_sand_takes_now_more_and_now_less_and_counts_less_at_high_speed():
     part = made('rotor_fault', 'gritty', 2.0)
 
@@ -378,6 +380,7 @@ def test_a_tilted_floor_tilts_a_vehicle_by_the_way_that_it_heads():
         [-0.02, 0.0, 0.0])
 
 
+@pytest.mark.slow
 def test_a_gyroscope_that_learns_its_bias_takes_a_long_turn_for_one():
     part, state = made('gyro_bias', 'learnt', 2.0), np.array([*np.zeros(9), 1.0, *REST])
     times = np.arange(0.0, 400.0, 0.02)

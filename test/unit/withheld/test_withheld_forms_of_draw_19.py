@@ -67,6 +67,7 @@ def test_the_slow_link_is_the_bound_of_the_fast_one():
     assert waits.max() == waits[at_bound][0] and 0.05 < np.mean(at_bound) < 0.35
 
 
+@pytest.mark.slow
 def test_a_clock_swings_as_it_is_set():
     line, offs = made('actuation_delay', 'disciplined', 2.0), []
     for seed in range(300):
@@ -291,6 +292,7 @@ def test_joints_hold_in_gentle_turns_and_yield_in_sharp_ones():
     assert sharp > 40.0 * gentle and gentle < joints.Jointed.PLAY
 
 
+@pytest.mark.slow
 def test_a_counterweight_comes_after_its_arm():
     part = made('com_offset', 'counterweight', 2.0)
     offs = []

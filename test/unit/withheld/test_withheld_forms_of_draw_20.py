@@ -51,6 +51,7 @@ def test_a_median_passes_no_short_peak_and_a_ramp_by_half_its_window_later():
     assert late == pytest.approx(np.tile([-0.5 * window, 0.5 * window], (len(late), 1)), abs=1.01)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('form', ['voted', 'video'])
 def test_a_line_has_its_mean_delay(form):
     line, waits = made('actuation_delay', form, 2.0), []
@@ -61,6 +62,7 @@ def test_a_line_has_its_mean_delay(form):
     assert np.min(waits) >= line.OWN * line.delay
 
 
+@pytest.mark.slow
 def test_the_second_computer_of_three_decides():
     line = made('actuation_delay', 'voted', 2.0)
     # A moment before a clock's tick, that one has waited least.
@@ -171,6 +173,7 @@ def test_blades_meet_their_vortices_in_a_shallow_descent_alone():
         assert lost(x, z) < 0.05 * shallow
 
 
+@pytest.mark.slow
 def test_low_flight_leaves_hollows_in_the_snow_where_it_was():
     part = hollows.Scoured(1.0, PARAMS, None)
     part.begin(None)

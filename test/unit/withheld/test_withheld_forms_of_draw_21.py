@@ -56,6 +56,7 @@ def test_a_controller_is_the_same_in_one_step_or_in_many():
     assert ends[0] == pytest.approx(ends[1], abs=1e-9) and 0.9 < ends[0] < 1.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('form', ['iterating', 'orbiting'])
 def test_a_line_has_its_mean_delay(form):
     line, waits = made('actuation_delay', form, 2.0), []

@@ -191,6 +191,7 @@ def test_rotors_that_sink_are_those_behind():
     assert one == pytest.approx([0.0, 0.0])
 
 
+@pytest.mark.slow
 def test_a_tilt_grows_with_the_way_until_a_place_is_known():
     part, shares = made(closures.Closing), []
     state = np.array([0.0, 0.0, 1.0, 0.6, 0.0, 0.8, 0.0, 0.0, 0.0, 1.0, 0.1, 0.2, 0.3])

@@ -317,6 +317,7 @@ def test_rime_comes_faster_with_the_flight_as_more_droplets_hit():
                                  rel=1e-4, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_rime_breaks_off_place_by_place_and_is_about_its_mean():
     means = []
     for seed in range(40):

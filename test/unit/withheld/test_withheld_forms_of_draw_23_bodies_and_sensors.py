@@ -120,6 +120,7 @@ def test_a_thread_rubs_by_the_same_force_at_every_speed_and_winds_with_it():
     assert part._wound - before == pytest.approx(2.8)
 
 
+@pytest.mark.slow
 def test_a_controller_is_hot_in_hover_and_cool_in_flight():
     part, lacks = made(threads.Uncooled), []
     for speed in (0.0, 1.0, 4.0):
@@ -242,6 +243,7 @@ def said_by(part, rates, step=0.01):
     return np.array(offs)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('axis', range(3))
 def test_an_attitude_with_wrong_scales_is_off_by_a_share_of_a_turn_and_comes_back(axis):
     part = made(scales.Scaled)
@@ -264,6 +266,7 @@ def test_wrong_scales_have_a_bound_and_leave_what_sits_askew():
     assert np.max(np.abs(made(scales.Scaled, 50.0).scales)) <= scales.Scaled.MOST
 
 
+@pytest.mark.slow
 def test_a_bias_flickers_alike_over_short_and_long_times():
     part, walks = made(scales.Flickering), []
     for seed in range(80):

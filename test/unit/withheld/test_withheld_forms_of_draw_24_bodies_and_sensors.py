@@ -273,6 +273,7 @@ def tilt_of(part, state):
     return (Rotation.from_quat(state[6:10]).inv() * Rotation.from_quat(out[6:10])).as_euler('ZYX')
 
 
+@pytest.mark.slow
 def test_signals_that_the_ground_reflects_swing_pitch_and_heading_with_the_height_alone():
     part, state, tilts = part_of(Reflected), HANGING.copy(), []
     state[6:10] = Rotation.from_euler('ZYX', [0.7, 0.2, -0.1]).as_quat()

@@ -154,6 +154,7 @@ def sent(line, commands, step=0.002):
     return np.array(given)
 
 
+@pytest.mark.slow
 def test_in_a_cascade_what_turns_the_body_comes_first_and_evenly():
     line, step = part_of(Cascaded), 0.002
     t = step * np.arange(1000)[:, None]
@@ -164,6 +165,7 @@ def test_in_a_cascade_what_turns_the_body_comes_first_and_evenly():
     assert given.mean(axis=1) == pytest.approx(np.ones(900))
 
 
+@pytest.mark.slow
 def test_in_a_cascade_the_thrust_comes_late_and_in_steps():
     line, step = part_of(Cascaded), 0.002
     t = step * np.arange(1000)[:, None]

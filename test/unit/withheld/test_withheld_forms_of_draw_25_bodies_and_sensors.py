@@ -245,6 +245,7 @@ def test_a_sonar_calls_at_each_echo_and_each_call_is_taken_for_a_turn():
     assert part.measured(0.0, state, 1.0)[10:] == pytest.approx(biases[-1] * part.bias)
 
 
+@pytest.mark.slow
 def test_a_turret_turns_the_body_back_and_leaves_neither_momentum_nor_force():
     weight, radius = 9.81 * PARAMS['mass'], PARAMS['rotor_radius']
     part = outside.Turret(2.0, weight, radius, np.random.default_rng(1))

@@ -101,6 +101,7 @@ def test_the_corner_moves_with_the_throttle_between_its_ends(mean, corner):
     assert step * (0.5 + missing.sum()) == pytest.approx(time * motor.parameters['time'], rel=5e-3)
 
 
+@pytest.mark.slow
 def test_pulses_have_their_mean_delay_and_come_one_after_another():
     line = part_of(PulseTrain)
     waits = np.array([line.waits(t) for t in np.arange(0.0, 20.0, 0.000773)])
