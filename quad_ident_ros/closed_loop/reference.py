@@ -8,13 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 import scipy
 
-from quad_ident_ros.data.record import FlightRecord, QUATERNION
+from quad_ident_ros.data.record import FlightRecord, QUATERNION, REFERENCE
 from quad_ident_ros.data.split import spans
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import RATES
 from quad_ident_ros.model.attitude import euler_from_quaternion
 
-ASKED = ('px_ref', 'py_ref', 'pz_ref', 'yaw_ref')   # m, world, and rad: columns of a record
+ASKED = tuple(REFERENCE)
 PLACE, VELOCITY = ('px', 'py', 'pz'), ('vx', 'vy', 'vz')
 KNOT = 0.25         # s between the knots of its spline: 2 Hz, which is what position loops reach
 MOST = 120.0        # s of a flight that are flown

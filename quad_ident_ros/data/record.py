@@ -36,6 +36,9 @@ MOMENTS = ('moment_x', 'moment_y')
 ARM = 'arm_length'
 """Info of a record: the arm length l (m) that makes u2 and u3 moments."""
 
+REFERENCE = {'px_ref': 'm', 'py_ref': 'm', 'pz_ref': 'm', 'yaw_ref': 'rad'}
+"""Unit of each column of what the controller was asked for, in the world; its gaps are nan."""
+
 SATURATED = 'saturated'
 """Column: 1 where U1..U4 ask a rotor for more than its limits, else 0."""
 

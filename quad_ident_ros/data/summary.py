@@ -24,7 +24,7 @@ from quad_ident_ros.data.quality.excitation import excitation
 from quad_ident_ros.data.quality.ground import airborne
 from quad_ident_ros.data.quality.series import GAP
 from quad_ident_ros.data.readers.base import Content
-from quad_ident_ros.data.record import FlightRecord, unit
+from quad_ident_ros.data.record import FlightRecord, REFERENCE, unit
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import Vehicle
 
@@ -115,7 +115,7 @@ def unread(path: str | Path, error: InputError) -> dict:
 def _column(name: str, values: np.ndarray, t: np.ndarray) -> dict[str, Any]:
     finite = values[np.isfinite(values)]
     changes = int(np.count_nonzero(values[1:] != values[:-1]))
-    some = {'unit': unit(name), 'missing': int(len(values) - len(finite)),
+    some = {'unit': unit(name) or REFERENCE.get(name), 'missing': int(len(values) - len(finite)),
             'changes_hz': changes / float(t[-1] - t[0])}
     for key, function in (('minimum', np.min), ('mean', np.mean), ('maximum', np.max),
                           ('std', np.std)):

@@ -10,6 +10,7 @@ import pytest
 from quad_ident_ros.cli.main import main
 from quad_ident_ros.closed_loop.reference import ASKED
 from quad_ident_ros.data.csv import read_csv
+from quad_ident_ros.data.summary import summarise
 from quad_ident_ros.effects.registry import from_entries
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import MOCAP_IMU
@@ -35,6 +36,8 @@ def test_the_command_writes_what_the_library_flies(tmp_path, capsys):
     truth = json.loads(capsys.readouterr().out)
     assert truth['effects'] == effects
     assert truth['samples'] == 1001
+    columns = summarise(written)['columns']
+    assert [columns[name]['unit'] for name in ASKED] == ['m', 'm', 'm', 'rad']
 
 
 def test_the_command_says_what_it_flew(tmp_path, capsys):
