@@ -38,7 +38,10 @@ def verdict_line(found: Diagnosis) -> str:
     unknown = 'unknown' in found.verdict
     share = (f'{100 * max(found.gap.closed, 0.0):.0f} % of the velocity gap above the noise'
              if above_noise(found.gap) else 'part of the gap' if unknown else 'the gap')
-    if unknown:
+    if predicts_worse(found):
+        share = (f'the flights that were fitted, but not {found.held_out}, which the nominal '
+                 'vehicle predicts better')
+    elif unknown:
         share += (', and the rest is unknown: another cause, or '
                   f'{"this effect" if len(named) == 1 else "one of these effects"} by a law that '
                   'is none of its forms')
@@ -97,13 +100,18 @@ def next_step(found: Diagnosis, written: str | None = None) -> str:
     if any(one['code'] == 'other_vehicle' for one in found.findings):
         return ('Next: check the vehicle file, which seems to be that of another vehicle, as the '
                 'warning "vehicle file" says, and diagnose again.')
+    if predicts_worse(found):
+        return (f'Next: see whether {found.held_out} was flown by the same vehicle as the others, '
+                'with the same payload, propellers and firmware, and diagnose together only what '
+                'was.')
     if 'unknown' in found.verdict:
         rest = ('Next: the lines "unexplained" and "differs" say in which channel, regime and '
                 'flight the rest occurs.')
         # What calm flights hardly show, a brisk one that is predicted needs.
         alone = [one.flight for one in found.flight_checks if one.differs] == [found.held_out]
         return (f'{rest} Only {found.held_out} differs, which was not used for fitting: if it '
-                'moves more than the others, hold out one of them instead (--hold-out FLIGHT).'
+                'moves more than the others, hold out one of them instead (--hold-out FLIGHT); if '
+                'its payload or propellers were others, diagnose it alone.'
                 if alone and len(found.flight_checks) > 2 else rest)
     if found.form_unknown:
         where = 'Next: the lines "unexplained" say where its law differs from the nearest one'
@@ -134,6 +142,13 @@ def is_uncertain(found: Diagnosis) -> bool:
     """Whether each effect that a verdict names is less likely present than not."""
     named = _named(found)
     return bool(named) and all(row.probability < RULES.present for row in named)
+
+
+def predicts_worse(found: Diagnosis) -> bool:
+    """Whether effects are named without which the held-out flight is clearly predicted better."""
+    before, after = (part['velocity'] for part in (found.gap.before_interval,
+                                                   found.gap.after_interval))
+    return bool(_named(found)) and after[0] > before[1]
 
 
 def above_noise(gap: Gap | GapGivenAttitude | GapInSimulator) -> bool:

@@ -47,13 +47,16 @@ def diagnosis(**changes):
     """Return a Diagnosis that names rotor drag, with changes of its fields."""
     gap = {name: dict.fromkeys(UNITS, value) for name, value in (
         ('before', 0.115), ('before_own', 0.115), ('after', 0.0331), ('noise', 0.0375))}
+    interval = {stage: {name: (0.9 * value, 1.1 * value) for name, value in gap[stage].items()}
+                for stage in ('before', 'after')}
     closed = ShareClosed(gap['after'], 1.0, 0.01, 'velocity')
     return replace(Diagnosis(
         vehicle=load_vehicle('hummingbird'), verdict=('rotor_drag',), minor=(),
         ranking=(Ranked('rotor_drag', 0.99, 'by_speed', 1.0, 1.0, 1.0, 60.0, 0,
                         {'coefficient': Value(0.2, 0.0015, 'kg/s')}, gap['after'],
                         gap['before']),),
-        where=(), gap=Gap(0.5, UNITS, **gap, before_interval={}, after_interval={}, closed=1.0,
+        where=(), gap=Gap(0.5, UNITS, **gap, before_interval=interval['before'],
+                          after_interval=interval['after'], closed=1.0,
                           horizons={}, without={'rotor_drag': gap['before']}),
         gap_given_attitude=GapGivenAttitude(0.5, **gap, closed=1.0),
         ceiling=Ceiling(closed, closed, {'force': 0.0, 'moment': 0.0}, ()), tolerance={},

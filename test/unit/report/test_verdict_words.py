@@ -8,6 +8,7 @@ from published import diagnosis
 import pytest
 
 from quad_ident_ros.diagnose.result import Unexplained
+from quad_ident_ros.report.diagnosis import caution_lines
 from quad_ident_ros.report.verdict import next_step, verdict_line
 
 FOUND = diagnosis(form_unknown=('rotor_drag',))
@@ -56,3 +57,19 @@ def test_no_one_is_asked_to_mend_gusts():
                       tolerance=dict.fromkeys(off.before, 0.02))
     assert 'mend rate_bias of the flights' in next_step(found)
     assert 'gusts' not in verdict_line(found)
+
+
+def test_effects_that_another_vehicle_has_explain_the_flights_that_were_fitted_alone():
+    worse = replace(FOUND.gap, after_interval={**FOUND.gap.after_interval, 'velocity': (0.8, 0.9)},
+                    before_interval={**FOUND.gap.before_interval, 'velocity': (0.1, 0.2)})
+    for verdict in (('rotor_drag',), ('rotor_drag', 'unknown')):
+        found = diagnosis(verdict=verdict, gap=worse)
+        line, step = verdict_line(found), next_step(found)
+        assert f'explains the flights that were fitted, but not {found.held_out}' in line
+        assert '%' not in line and 'same payload' in step and found.held_out in step
+        assert any('predicts it worse' in one for one in caution_lines(found))
+    # What may be chance is none.
+    near = replace(worse, after_interval={**worse.after_interval, 'velocity': (0.19, 0.3)})
+    found = diagnosis(verdict=('rotor_drag',), gap=near)
+    assert 'but not' not in verdict_line(found)
+    assert not any('predicts it worse' in one for one in caution_lines(found))
