@@ -27,5 +27,5 @@ NOISES = {
 STRANGERS = {
     DEVELOPMENT: ('periodic_force', 'tether', 'thrust_exponent', 'backlash', 'updraft', 'slosh',
                   'ceiling', 'neighbours', 'compass', 'branches', 'leash', 'recoil',
-                  'keel', 'twisted', 'flywheel', 'carousel', 'sandbag', 'bent'),
-    EVALUATION: ('wall', 'whirl', 'stutter', 'turret')}
+                  'keel', 'twisted', 'flywheel', 'carousel', 'sandbag', 'bent', 'turret'),
+    EVALUATION: ('wall', 'whirl', 'stutter', 'roped')}

@@ -489,6 +489,36 @@ class Turret(Influence):
         return np.zeros(3), -self.inertia * slope * self.turns[last]
 
 
+class Roped(Force):
+    """
+    A rope that is spanned across the hall, and runs through a ring on the vehicle.
+
+    It pulls equally to either end, so that it holds the vehicle little along itself, and across
+    the more, the further it is drawn aside: by its tension at first, and then by how much longer
+    it gets. A. H. Nayfeh, D. T. Mook, Nonlinear Oscillations, 1979, on strings; as vehicles are
+    secured in first flights in practice.
+    """
+
+    SPAN, HIGH = 5.0, (0.8, 1.2)    # m; m, of its ends over ground
+    ASIDE = 0.3                     # m, at most, from the middle of the field
+    STIFF = 4.0                     # 1/m, of the tension: how much more it is by its length
+
+    def __init__(self, size, weight, rng):
+        """Draw where it is spanned; take its tension, N."""
+        angle, aside = rng.uniform(0.0, np.pi), rng.uniform(-self.ASIDE, self.ASIDE)
+        along = np.array([np.cos(angle), np.sin(angle), 0.0])
+        middle = np.array([-aside * along[1], aside * along[0], rng.uniform(*self.HIGH)])
+        self.ends = middle + 0.5 * self.SPAN * np.array([along, -along])
+        self.tension = 0.025 * size * weight
+
+    def force(self, time, position, velocity):
+        """Return the force."""
+        onto = self.ends - position
+        far = np.maximum(np.linalg.norm(onto, axis=1), 1e-9)
+        longer = max(float(np.sum(far)) - self.SPAN, 0.0)
+        return self.tension * (1.0 + self.STIFF * longer) * ((1.0 / far) @ onto)
+
+
 # Each with what of the vehicle its size is measured by.
 KINDS = {'periodic_force': (Periodic, 'weight'), 'tether': (Tether, 'weight'),
          'updraft': (Updraft, 'weight'), 'thrust_exponent': (Exponent, 'hover'),
@@ -501,4 +531,4 @@ KINDS = {'periodic_force': (Periodic, 'weight'), 'tether': (Tether, 'weight'),
          'twisted': (Twisted, 'weight', 'radius', 'hover'),
          'flywheel': (Flywheel, 'weight', 'radius'), 'carousel': (Carousel, 'mass'),
          'sandbag': (Sandbag, 'weight'), 'bent': (Bent, 'rotors', 'weight', 'hover'),
-         'turret': (Turret, 'weight', 'radius')}
+         'turret': (Turret, 'weight', 'radius'), 'roped': (Roped, 'weight')}
