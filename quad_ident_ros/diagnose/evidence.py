@@ -58,7 +58,7 @@ def _odds(member: np.ndarray, causes: Sequence[Candidate], rules: Rules) -> np.n
     """Return the log-odds (N,) before looking of sets; member (N, K): which causes each has."""
     shares = np.array([cause.nuisance.prior if cause.nuisance
                        else rules.prior_of(cause.effect) * cause.share for cause in causes])
-    # A sensor with one bias may have others. Clocks, thrust and wind have nothing to do with them.
+    # Flights with a bias or a trim have others; clocks, thrust and wind are of another kind.
     biases = [k for k, cause in enumerate(causes) if cause.nuisance is not None
               and cause.nuisance.name not in (CLOCK, LEVEL) and not cause.nuisance.of_effect]
     further = np.zeros(member.shape, bool)
