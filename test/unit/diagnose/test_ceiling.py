@@ -27,8 +27,8 @@ DRAG = {'rotor_drag': {'coefficient': 0.3 * NOMINAL.mass}}
 EFFECTS = ['rotor_drag', 'body_drag', 'mass_offset']    # few: the search is no matter here
 
 
-def flights(vehicle, effects, seed=0, courses=COURSES):
-    return [fly_closed_loop(vehicle, effects, course, duration=15.0, seed=seed + k,
+def flights(vehicle, effects, seed=0, courses=COURSES, duration=10.0):
+    return [fly_closed_loop(vehicle, effects, course, duration=duration, seed=seed + k,
                             noise=SENSORS['mocap_imu']) for k, course in enumerate(courses)]
 
 
@@ -68,7 +68,7 @@ def test_a_force_that_no_effect_has_is_under_the_ceiling(found):
     assert 'unknown' in found.verdict
     for closed, ceiling in ((found.gap.closed, found.ceiling.open_loop),
                             (found.gap_given_attitude.closed, found.ceiling.given_attitude)):
-        # All of it is a function of the state: the truth is 1, of which three flights of 15 s
+        # All of it is a function of the state: the truth is 1, of which three flights of 10 s
         # do not show all.
         assert ceiling.closed - 3.0 * ceiling.std > closed
         assert 0.7 < ceiling.closed <= 1.0
@@ -94,7 +94,8 @@ def test_the_ceiling_of_a_moment_is_told_by_the_rate():
     seen = [replace(one, columns={name: values for name, values in one.columns.items()
                                   if name in ('wx', 'wy', 'wz', 'ax', 'ay', 'az')
                                   or name.startswith('cmd')})
-            for one in flights(NOMINAL, lag, courses=('figure8', 'lissajous', 'steps'))]
+            for one in flights(NOMINAL, lag, courses=('figure8', 'lissajous', 'steps'),
+                               duration=15.0)]
     one = diagnose(seen, NOMINAL, effects=['thrust_scale'])
     assert one.ceiling.shown == ('moment',)
     ceiling = one.ceiling.open_loop
