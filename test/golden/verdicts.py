@@ -18,9 +18,13 @@ GROUPS = ('velocity', 'attitude')
 def summary_of(case: Case) -> dict:
     """Return what is recorded of a case: verdict, probabilities, gap, parameters with std."""
     try:
-        data = diagnose(case.flights(), case.nominal()).as_data()
+        return summary(diagnose(case.flights(), case.nominal()).as_data())
     except InputError as error:
         return {'verdict': ['refused'], 'why': str(error)}
+
+
+def summary(data: dict) -> dict:
+    """Return what is recorded of a diagnosis as data."""
     ranking = {row['effect']: row for row in data['ranking']}
     gap = data['gap']
     return {

@@ -20,6 +20,7 @@ from quad_ident_ros.model.vehicle import load_vehicle
 VEHICLE = load_vehicle('hummingbird')
 FINE = Sensors(white=Noise(position=1e-5, velocity=1e-4, attitude=1e-5, rate=1e-4, force=1e-3))
 USUAL = Sensors(white=Noise(position=7e-4, velocity=7e-3, attitude=1.4e-3, rate=7e-3))
+DRAG = {'rotor_drag': {'coefficient': 0.15}}
 LATE = [{'pose': 0.023}, {'velocity': 0.012}, {'rate': 0.0043},
         {'pose': 0.017, 'velocity': 0.03}, {'velocity': 0.008, 'rate': 0.015}]
 
@@ -55,6 +56,7 @@ def test_how_late_a_stream_is_stamped_is_told_and_it_is_moved_back(offsets):
         assert np.abs(back.columns[name] - was).max() < 2e-3 * np.abs(speed).max() + 1e-3
 
 
+@pytest.mark.slow
 def test_a_record_of_one_clock_is_left_as_it_is():
     for seed in range(5):
         record = flown(seed)
@@ -132,12 +134,11 @@ def test_a_stream_whose_offset_cannot_be_told_stays_where_it_is():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize('truth', [{}, {'rotor_drag': {'coefficient': 0.15}}],
-                         ids=['none', 'drag'])
-@pytest.mark.parametrize('sensors, stream, offset', [
-    (replace(USUAL, imu=Stream(delay=0.006)), 'rate', 0.006),
-    (replace(USUAL, mocap=Stream(delay=0.02)), 'pose', 0.02), (USUAL, 'velocity', 0.02)],
-    ids=['rate', 'pose', 'velocity'])
+@pytest.mark.parametrize('sensors, stream, offset, truth', [
+    (replace(USUAL, imu=Stream(delay=0.006)), 'rate', 0.006, {}),
+    (replace(USUAL, mocap=Stream(delay=0.02)), 'pose', 0.02, DRAG),
+    (USUAL, 'velocity', 0.02, {}), (USUAL, 'velocity', 0.02, DRAG)],
+    ids=['rate-none', 'pose-drag', 'velocity-none', 'velocity-drag'])
 def test_a_stream_that_is_late_changes_no_verdict(sensors, stream, offset, truth):
     flights = [flown(k, sensors, truth, course)
                for k, course in enumerate(('figure8', 'low_passes', 'lissajous'))]
@@ -158,6 +159,7 @@ def test_a_late_rate_is_not_taken_for_the_lag_of_motors():
     assert parameter.value == pytest.approx(0.03, abs=4 * parameter.std)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('stream, where', [('velocity', 'position against velocity'),
                                            ('rate', 'attitude and position against gyro')])
 def test_info_says_which_streams_are_apart(stream, where):

@@ -20,15 +20,15 @@ from quad_ident_ros.report.ceiling import ceiling_line, residual_line, share_of
 from quad_ident_ros.report.diagnosis import far_rows
 from quad_ident_ros.report.received import diagnosis_from
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group('ceiling')]    # they share diagnoses
 NOMINAL = load_vehicle('hummingbird')
 COURSES = ('figure8', 'lissajous', 'steps', 'lissajous')     # the last one is held out
 DRAG = {'rotor_drag': {'coefficient': 0.3 * NOMINAL.mass}}
 EFFECTS = ['rotor_drag', 'body_drag', 'mass_offset']    # few: the search is no matter here
 
 
-def flights(vehicle, effects, seed=0, courses=COURSES):
-    return [fly_closed_loop(vehicle, effects, course, duration=15.0, seed=seed + k,
+def flights(vehicle, effects, seed=0, courses=COURSES, duration=10.0):
+    return [fly_closed_loop(vehicle, effects, course, duration=duration, seed=seed + k,
                             noise=SENSORS['mocap_imu']) for k, course in enumerate(courses)]
 
 
@@ -68,7 +68,7 @@ def test_a_force_that_no_effect_has_is_under_the_ceiling(found):
     assert 'unknown' in found.verdict
     for closed, ceiling in ((found.gap.closed, found.ceiling.open_loop),
                             (found.gap_given_attitude.closed, found.ceiling.given_attitude)):
-        # All of it is a function of the state: the truth is 1, of which three flights of 15 s
+        # All of it is a function of the state: the truth is 1, of which three flights of 10 s
         # do not show all.
         assert ceiling.closed - 3.0 * ceiling.std > closed
         assert 0.7 < ceiling.closed <= 1.0
@@ -94,7 +94,8 @@ def test_the_ceiling_of_a_moment_is_told_by_the_rate():
     seen = [replace(one, columns={name: values for name, values in one.columns.items()
                                   if name in ('wx', 'wy', 'wz', 'ax', 'ay', 'az')
                                   or name.startswith('cmd')})
-            for one in flights(NOMINAL, lag, courses=('figure8', 'lissajous', 'steps'))]
+            for one in flights(NOMINAL, lag, courses=('figure8', 'lissajous', 'steps'),
+                               duration=15.0)]
     one = diagnose(seen, NOMINAL, effects=['thrust_scale'])
     assert one.ceiling.shown == ('moment',)
     ceiling = one.ceiling.open_loop
@@ -167,7 +168,7 @@ def test_the_command_writes_it_and_the_verdict_is_the_same(tmp_path, capsys, str
     told = []
     for path, more in ((out, ['--residual']), (plain, [])):
         said = tmp_path / f'{path.stem}.json'
-        assert main(command(tmp_path, strange, '--out-vehicle', str(path), '--json', str(said),
+        assert main(command(tmp_path, strange[:2], '--out-vehicle', str(path), '--json', str(said),
                             *more)) == 0
         told.append(json.loads(said.read_text()))
     assert told[0] == told[1]
@@ -180,8 +181,8 @@ def test_the_command_writes_it_and_the_verdict_is_the_same(tmp_path, capsys, str
 
 def test_the_command_refuses_it_where_it_gains_nothing(tmp_path, capsys):
     out = tmp_path / 'real.yaml'
-    assert main(command(tmp_path, flights(NOMINAL, DRAG), '--out-vehicle', str(out),
-                        '--residual')) == 0
+    assert main(command(tmp_path, flights(NOMINAL, DRAG, courses=COURSES[:2]), '--out-vehicle',
+                        str(out), '--residual')) == 0
     assert 'residual: none is written' in capsys.readouterr().out
     assert load_vehicle(out).residual is None
 

@@ -12,7 +12,6 @@ from test_diagnosis import flown, HOVER, VEHICLE
 from quad_ident_ros.data.outputs import commanded
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.diagnose.diagnosis import diagnose
-from quad_ident_ros.effects.registry import titled
 from quad_ident_ros.model.motors import motors_from
 
 pytestmark = pytest.mark.slow
@@ -37,9 +36,8 @@ def with_outputs(record, told):
 
 
 @pytest.mark.parametrize(('vehicle', 'told'), [
-    (replace(VEHICLE, speed_min=0.0, speed_max=FULL), lambda speed: 1000 + 1000 * speed / FULL),
     (replace(VEHICLE, motors=motors_from('v', CURVE)), duty),
-    (NOWHERE, lambda speed: speed / FULL)], ids=['pwm', 'duty16 by a thrust curve', 'by weight'])
+    (NOWHERE, lambda speed: speed / FULL)], ids=['duty16 by a thrust curve', 'by weight'])
 def test_the_diagnosis_is_that_of_rotor_speeds(vehicle, told):
     records = [commanded([with_outputs(record, told)], vehicle)[0] for record in flown(TRUTH)]
     found = diagnose(records, vehicle)
@@ -63,14 +61,3 @@ def test_a_curve_that_is_bent_is_named_where_the_weight_sets_its_scale():
     # 1.2 ((speed + 0.4) / 1.4)^2 is the weight at this speed, which the commands have as 1.
     hover = 1.4 / math.sqrt(1.2) - 0.4
     assert row.parameters['offset'].value == pytest.approx(0.4 / hover, abs=0.02)
-
-
-@pytest.mark.parametrize(('truth', 'other'), [
-    ({'motor_lag': {'time_constant': 0.03}}, 'actuation_delay'),
-    ({'actuation_delay': {'delay': 0.02}}, 'motor_lag')], ids=['lag', 'delay'])
-def test_measured_speeds_rule_out_the_other_actuator(truth, other):
-    found = diagnose(flown(truth), VEHICLE)
-    assert set(found.verdict) == set(truth)
-    assert [row.probability for row in found.ranking if row.effect == other] == [0.0]
-    said = [one['message'] for one in found.findings if one['code'] == 'rotor_answer']
-    assert len(said) == 4 and said[0].endswith(f'; this rules out {titled(other)}')

@@ -22,7 +22,7 @@ from quad_ident_ros.greybox.parameters import INDEX, nominal
 from quad_ident_ros.model.vehicle import load_vehicle
 from quad_ident_ros.report.diagnosis import show
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group('fly_next')]   # they share diagnoses
 VEHICLE = load_vehicle('hummingbird')
 WHITE = Sensors(white=MOCAP_IMU.white)
 # Weaker thrust gives weaker moments, too: above this size they show in a hover which it is.
@@ -86,6 +86,7 @@ def test_the_manoeuvre_proposed_tells_them_apart(doubtful):
     assert probabilities(found)[rival] < 0.01
 
 
+@pytest.mark.parametrize('doubtful', ['mass_offset'], indirect=True)
 def test_the_manoeuvre_ranked_last_does_not(doubtful):
     last = list(proposal(doubtful[2])['manoeuvres'])[-1]
     found = flown_as(doubtful, last)

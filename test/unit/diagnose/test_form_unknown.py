@@ -43,7 +43,7 @@ def found_of(residual):
     """Return the diagnosis of what flew with a drag of the rotors and a further force."""
     vehicle = replace(NOMINAL, residual=residual)
     flights = [fly_closed_loop(vehicle, {'rotor_drag': {'coefficient': DRAG}}, course,
-                               duration=15.0, seed=k, noise=SENSORS['mocap_imu'])
+                               duration=10.0, seed=k, noise=SENSORS['mocap_imu'])
                for k, course in enumerate(COURSES)]
     return diagnose(flights, NOMINAL, effects=EFFECTS)
 

@@ -15,7 +15,7 @@ from quad_ident_ros.model.dynamics import STATES
 from quad_ident_ros.model.vehicle import load_vehicle
 
 pytestmark = pytest.mark.slow
-in_one_process = pytest.mark.xdist_group('gusty')    # they share a diagnosis of a minute
+in_one_process = pytest.mark.xdist_group('gusty')    # they share a diagnosis
 STEP, SECONDS, DRAG = 0.01, 15.0, 0.06      # s, s, kg/m
 LIGHT = 1.5                                 # m/s, light turbulence near the ground
 NOISE = np.repeat([1e-3, 1e-2, 2e-3, 1e-2], [3, 3, 4, 3])
@@ -81,7 +81,7 @@ def flight(seed, wind, drag=DRAG):
 
 @pytest.fixture(scope='module')
 def gusty():
-    return diagnose([flight(seed, LIGHT) for seed in range(4)], load_vehicle('hummingbird'))
+    return diagnose([flight(seed, LIGHT) for seed in range(2)], load_vehicle('hummingbird'))
 
 
 def holds(found, drag):
@@ -125,6 +125,6 @@ def test_gaps_with_and_without_an_effect_have_no_gusts():
 
 
 def test_still_air_has_no_gusts():
-    still = diagnose([flight(seed, 0.0) for seed in range(4)], load_vehicle('hummingbird'))
+    still = diagnose([flight(seed, 0.0) for seed in range(2)], load_vehicle('hummingbird'))
     assert still.verdict == ('body_drag',)
     assert 'gusts' not in (still.nuisances or {})

@@ -22,7 +22,7 @@ def flights(effects, degrees):
     """Return three flights whose attitudes are turned about the vertical by so many degrees."""
     made = []
     for seed, (name, angle) in enumerate(zip(FLOWN, degrees, strict=True)):
-        record = fly_closed_loop(VEHICLE, effects, name, duration=20.0, seed=seed,
+        record = fly_closed_loop(VEHICLE, effects, name, duration=10.0, seed=seed,
                                  noise=MOCAP_IMU)
         q = product(turn(np.array([0.0, 0.0, np.radians(angle)])), record.stack(*QUATERNION))
         made.append(changed(record, **dict(zip(QUATERNION, q.T, strict=True))))

@@ -461,6 +461,7 @@ def test_parameters_that_are_tied_count_together():
     assert standard_errors_from_none(np.array([1.0, -1.0]), covariance) < 1.0
 
 
+@pytest.mark.slow
 def test_of_more_parameters_without_an_effect_one_is_no_further_off_by_chance():
     rng = np.random.default_rng(8)
     for count in (1, 3, 6):

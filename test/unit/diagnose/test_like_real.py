@@ -18,9 +18,10 @@ from quad_ident_ros.greybox.flights import track_of
 from quad_ident_ros.greybox.parameters import nominal, SPLIT
 from quad_ident_ros.model.vehicle import load_vehicle
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group('like_real')]     # they share a diagnosis
 TRUTH = {'rotor_drag': {'coefficient': 0.25}, 'mass_offset': {'mass': 0.08}}
 NOMINAL = load_experiment('closed_loop')
+EFFECTS = 'rotor_drag,body_drag,mass_offset,wind'       # few: the search is no matter here
 
 
 @pytest.fixture(scope='module')
@@ -34,7 +35,7 @@ def written(tmp_path_factory):
         write_csv(paths[-1], fly(real, run, seed=3).record)
     out, data = folder / 'like_real.yaml', folder / 'out.json'
     assert main(['diagnose', *paths, '--vehicle', NOMINAL.vehicle.name, '--json', str(data),
-                 '--out-vehicle', str(out)]) == 0
+                 '--out-vehicle', str(out), '--effects', EFFECTS]) == 0
     return [read_csv(path) for path in paths], json.loads(data.read_text()), out
 
 

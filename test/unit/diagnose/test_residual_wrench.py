@@ -95,6 +95,7 @@ def test_the_accelerometer_shows_small_forces_more_clearly(hover, felt):
     np.testing.assert_array_equal(with_it.values[:, 3:], without.values[:, 3:])
 
 
+@pytest.mark.slow
 def test_a_wave_has_its_size_by_the_accelerometer(felt):
     """The mean over a window of 0.2 s takes of 3 Hz what a sinc says."""
     track = track_of(pushed(felt, 3.0), VEHICLE)

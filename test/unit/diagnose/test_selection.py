@@ -206,6 +206,7 @@ def test_clocks_that_all_flights_have_late_are_a_delay(offsets, joins):
         assert {cause.effect for cause in chosen} == {CLOCK, 'actuation_delay'}
 
 
+@pytest.mark.slow
 def test_delays_and_lags_are_judged_alike_wherever_flights_are_linearised():
     """A lag whose slopes vanish around a delay cost nothing for its parameters by these."""
     vehicle = load_vehicle('hummingbird')
@@ -236,6 +237,7 @@ def search_among(records, vehicle, effects, nuisances):
     return search
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('delays', [(0.017, 0.020, 0.023), (0.037, 0.037, 0.028)])
 def test_a_delay_that_all_flights_have_stays_where_they_are_linearised_again(delays):
     """Their clocks alone are the simpler set, and as good."""
@@ -254,6 +256,7 @@ def test_a_delay_that_all_flights_have_stays_where_they_are_linearised_again(del
     assert search.selection().joint.errors == pytest.approx([spread / np.sqrt(3.0)], rel=0.01)
 
 
+@pytest.mark.slow
 def test_all_that_flights_have_alike_leaves_their_nuisances():
     vehicle = load_vehicle('hummingbird')
     true = {'gyro_bias.x': 0.05, 'attitude_misalignment.roll': 0.02}

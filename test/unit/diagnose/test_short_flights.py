@@ -28,6 +28,7 @@ def cut(flight, seconds):
     return flight.slice(0, round(100 * seconds))
 
 
+@pytest.mark.slow
 def test_the_library_refuses_a_short_flight_and_says_what_is_needed(flight):
     text = '3 s are too short for a diagnosis; at least 4 s are needed'
     with pytest.raises(InputError, match=text):
@@ -48,6 +49,7 @@ def test_the_command_refuses_in_one_line(flight, seconds, tmp_path, capsys):
     assert f'{seconds:.3g} s are too short' in said.err and '4 s are needed' in said.err
 
 
+@pytest.mark.slow
 def test_the_shortest_flight_bears_a_verdict(flight):
     found = diagnose([cut(flight, RULES.shortest)], VEHICLE, effects=['rotor_drag', 'mass_offset'])
     assert 'rotor_drag' in found.verdict
@@ -63,6 +65,7 @@ def test_of_columns_that_are_missing_it_is_said_what_would_do(flight, gone, inst
         diagnose([replace(flight, columns=columns)], VEHICLE)
 
 
+@pytest.mark.slow
 def test_a_lossy_flight_held_out_has_the_horizons_that_its_stretches_allow(flight):
     """Rows are lost every 1.1 s: no stretch is as long as 1 s and its margin."""
     since = (flight.t - flight.t[0]) % 1.1
@@ -73,12 +76,14 @@ def test_a_lossy_flight_held_out_has_the_horizons_that_its_stretches_allow(fligh
     assert {'0.1', '0.5'} <= found.gap.horizons.keys() and '1.0' not in found.gap.horizons
 
 
+@pytest.mark.slow
 def test_a_flight_held_out_that_is_among_the_others_is_listed_once(flight):
     other = fly_closed_loop(VEHICLE, {}, 'lissajous', duration=6.0, seed=2, noise=MOCAP_IMU)
     found = diagnose([other, flight], VEHICLE, hold_out=flight, effects=['rotor_drag'])
     assert [one.flight for one in found.recorded] == [other.info['name'], flight.info['name']]
 
 
+@pytest.mark.slow
 def test_flights_with_and_without_a_position_make_one_diagnosis(flight):
     without = replace(flight, columns={name: values for name, values in flight.columns.items()
                                        if name not in ('px', 'py', 'pz')}, info={'name': 'other'})
