@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Real flights beside the checkout, in ../shared; where they are not their tests are skipped."""
 
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -26,6 +27,7 @@ def real_vehicle() -> Vehicle:
     return load_vehicle(NANOBENCH / 'vehicle.yaml')
 
 
+@cache
 def whole_real_flight(name: str) -> FlightRecord:
     """Return a real flight, from take-off to landing."""
     return load(NANOBENCH / f'{name}.csv.gz')

@@ -66,6 +66,7 @@ def test_memory_of_the_checks_grows_with_the_rows():
     assert many < 2 * 4 * some
 
 
+@pytest.mark.slow
 def test_time_of_the_checks_grows_with_the_rows():
     def took(count):
         record, times = stamped(bursts(count)), []
@@ -106,6 +107,7 @@ def run(capsys, *words):
 NAMES = ['[/]', '[bold]x', ':smile:', r'\[/]', '$x_{$', '[red]y[/red]']
 
 
+@pytest.mark.slow
 def test_names_with_markup_are_shown_as_they_are(tmp_path, capsys):
     folder = tmp_path / '['
     folder.mkdir()
@@ -117,6 +119,7 @@ def test_names_with_markup_are_shown_as_they_are(tmp_path, capsys):
     assert set(NAMES) <= set(table)
 
 
+@pytest.mark.slow
 def test_a_json_file_has_null_for_what_is_no_number(tmp_path, capsys):
     write_json(tmp_path / 'x.json', {'a': [np.inf, (1.0, float('nan'))], 'b': np.float64('-inf')})
     assert json.loads((tmp_path / 'x.json').read_text()) == {'a': [None, [1.0, None]], 'b': None}

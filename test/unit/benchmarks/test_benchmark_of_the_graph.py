@@ -38,6 +38,7 @@ def test_messages_that_were_not_received_are_counted():
     assert load.Vehicle(RUN, account={'received': {**received, 'pose': 97}}).lost == 3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(('missing', 'whole'), [(None, True), (('pose', 50), False),
                                                 (('input', 99), False)])
 def test_a_bag_is_whole_with_each_message_only(tmp_path, missing, whole):
@@ -53,12 +54,14 @@ def test_a_bag_is_whole_with_each_message_only(tmp_path, missing, whole):
     assert load.is_whole(tmp_path / 'bag', RUN) == whole
 
 
+@pytest.mark.slow
 def test_the_flight_stays_near_hover(tmp_path):
     experiment = load_experiment(load.simulator(tmp_path, 0.01, 60.0)['experiment'])
     record = fly(experiment, experiment.runs[0]).record
     assert np.abs(record.euler()[:, :2]).max() < 0.05 and np.ptp(record.columns['pz']) < 5.0
 
 
+@pytest.mark.slow
 def test_the_time_of_a_process_is_its_cpu_time():
     process = subprocess.Popen(
         [sys.executable, '-c', 'import time\nwhile time.process_time() < 0.3: pass\n'

@@ -35,6 +35,7 @@ def test_tables_go_into_the_documents_only_where_that_is_asked_for(monkeypatch, 
 STEP = np.ones(500)
 
 
+@pytest.mark.slow
 def test_derivatives_of_a_double_integrator_are_powers_of_time():
     found = derivatives(0.0, 0.0, STEP, problems.PERIOD, SECOND)
     closed = [T ** 2 / 2, -T ** 3 / 6, -T ** 4 / 24, T ** 4 / 12, T ** 5 / 60, T ** 6 / 360]
@@ -147,6 +148,7 @@ def test_a_tracker_ends_a_search_at_its_budget_or_its_target():
     assert shorter.best_cost > tracker.best_cost
 
 
+@pytest.mark.slow
 def test_plain_numpy_rolls_out_what_the_compiled_model_does():
     problem = rollout.Problem(samples=20, batch=3)
     assert np.abs(problem.compiled(rollout.roll_out) - problem.in_numpy()).max() < 1e-9

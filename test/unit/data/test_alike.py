@@ -69,6 +69,7 @@ def agree(path, monkeypatch, mapping=None):
     return count
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('write', [write2, write_old, write1])
 @pytest.mark.parametrize('mapping', [None, FIELDS])
 def test_all_but_the_first_message_of_a_topic_come_together(tmp_path, monkeypatch, write,
@@ -82,6 +83,7 @@ def test_all_but_the_first_message_of_a_topic_come_together(tmp_path, monkeypatc
     assert count == roles * (len(SMALL) - 1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('velocity', ['world', 'body'])
 @pytest.mark.parametrize('old', [False, True])
 def test_px4s_messages_with_stamps_counters_and_frames(tmp_path, monkeypatch, velocity, old):
@@ -94,6 +96,7 @@ def test_px4s_messages_with_stamps_counters_and_frames(tmp_path, monkeypatch, ve
     assert agree(write2(tmp_path / 'bag', rows, types=types), monkeypatch) > 3 * len(SMALL)
 
 
+@pytest.mark.slow
 def test_a_velocity_that_changes_its_frame_is_refused_at_its_message(tmp_path, monkeypatch):
     """The field that says how others are read has one value in messages that come together."""
     rows = px4(SMALL, SPEEDS / 2000)
@@ -104,6 +107,7 @@ def test_a_velocity_that_changes_its_frame_is_refused_at_its_message(tmp_path, m
         load_all(path)
 
 
+@pytest.mark.slow
 def test_texts_and_lists_that_change_are_read_one_by_one(tmp_path, monkeypatch):
     """Another frame_id of the same length and of another, an attitude that is not always there."""
     rows = [*poses(SMALL), *imu(SMALL)]
@@ -116,11 +120,13 @@ def test_texts_and_lists_that_change_are_read_one_by_one(tmp_path, monkeypatch):
     assert 0 < count < 3 * len(SMALL)
 
 
+@pytest.mark.slow
 def test_transforms_of_which_each_message_has_others_never_come_together(tmp_path, monkeypatch):
     path = write2(tmp_path / 'bag', transforms(SMALL, ['quad']))
     assert agree(path, monkeypatch) == 0
 
 
+@pytest.mark.slow
 def test_few_wait_and_many_come_in_parts(tmp_path, monkeypatch):
     monkeypatch.setattr(alike, 'MOST_MESSAGES', 16)
     path = write2(tmp_path / 'bag', odometry(SMALL))

@@ -49,6 +49,7 @@ def without(record, share):
                    columns={name: values[kept] for name, values in record.columns.items()})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('rate', [50.0, 100.0, 200.0, 500.0])
 @pytest.mark.parametrize('late', [-0.0237, 0.0, 0.0161])
 def test_the_clock_is_told_within_a_tenth_of_a_sample(rate, late):
@@ -69,6 +70,7 @@ def test_lost_rows_do_not_matter():
     assert found.lag == pytest.approx(-0.0161, abs=1e-3)
 
 
+@pytest.mark.slow
 def test_a_clock_that_drifts_is_told_so():
     found = answer_of(stamped(flown(duration=30.0), 0.013, drift=1e-4))
     assert found.lag == pytest.approx(-0.013, abs=1e-3)
@@ -133,6 +135,7 @@ def test_the_flight_held_out_has_no_part_in_the_clocks_of_the_others():
     assert clocks_of([None, None], [None]) == [None, None, None]
 
 
+@pytest.mark.slow
 def test_streams_that_were_moved_leave_open_which_of_them_is_answered():
     record = stamped(flown(), 0.02, streams=('pose', 'velocity'))
     [(moved, late, answer)] = on_one_clock([record])
@@ -196,12 +199,14 @@ def test_clocks_that_drift_are_put_right():
     assert data['gap']['after']['rate'] < 1.1 * data['gap']['noise']['rate']
 
 
+@pytest.mark.slow
 def test_a_fit_puts_the_clocks_right_too():
     found = fit([stamped(flown(1, DELAY), 0.02)], VEHICLE, ['actuation_delay'])
     [delay] = found.parameters
     assert delay.value == pytest.approx(0.017, abs=0.002)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('vehicle', ['hummingbird', 'iris', 'crazyflie', 'paper_quadrotor'])
 @pytest.mark.parametrize('noise', ['clean', 'mocap_imu'])
 def test_a_clean_flight_has_no_cautions(vehicle, noise):

@@ -38,6 +38,7 @@ def without(messages, *names):
     return [message for message in messages if message[0] not in names]
 
 
+@pytest.mark.slow
 def test_a_log_gives_the_flight_in_enu_and_flu(tmp_path):
     read = load(file(tmp_path, copter(SMALL, OUTPUTS)), PWM, VEHICLE)
     assert read.info['start_ns'] == 2_000_000_000
@@ -70,6 +71,7 @@ def test_the_parameters_tell_which_output_is_which_motor(tmp_path):
     assert not read.has('output5')
 
 
+@pytest.mark.slow
 def test_the_thrust_curve_of_the_parameters_tells_the_rotor_speeds(tmp_path):
     vehicle = replace(VEHICLE, speed_max=1700.0)
     share = (SMALL.stack(*CMD) / vehicle.speed_max) ** 2    # of the full thrust
@@ -164,6 +166,7 @@ def test_an_instance_is_chosen_by_the_mapping(tmp_path):
 STATUS = {**TYPES, 'XKF4': (80, 'QBbb', 'TimeUS,C,SS,PI')}
 
 
+@pytest.mark.slow
 def test_the_lane_is_read_by_which_the_vehicle_flew(tmp_path):
     messages = copter(SMALL, OUTPUTS)
     # As if the second lane were the good one.
@@ -184,6 +187,7 @@ def test_the_lane_is_read_by_which_the_vehicle_flew(tmp_path):
     assert any('2, is not logged' in note for note in read.info['notes'])
 
 
+@pytest.mark.slow
 def test_a_flight_is_split_where_the_primary_lane_changes(tmp_path):
     record = flight(seconds=12.0, rate=50.0)
     outputs = 1000 + 1000 * (record.stack(*CMD) - 100) / 1600

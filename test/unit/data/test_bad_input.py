@@ -6,6 +6,7 @@ from flightmaker import copy_bag, flight, px4_samples, ulog, VEHICLE
 from hypothesis import given
 from hypothesis import strategies as st
 import numpy as np
+import pytest
 from reader_checks import ALL_TOPICS, FAST, refused, SMALL
 from rosbags.rosbag2 import StoragePlugin
 
@@ -20,6 +21,7 @@ from quad_ident_ros.errors import InputError
 BYTES = st.binary(max_size=400)
 
 
+@pytest.mark.slow
 @FAST
 @given(st.sampled_from(['f.csv', 'f.csv.gz', 'f.mcap', 'f.db3', 'f.ulg']), BYTES,
        st.sampled_from([b'', b't,pz\n', b'\x89MCAP0\r\n', b'SQLite format 3\0',
@@ -51,6 +53,7 @@ def valid(folder, name):
     return VALID[name]
 
 
+@pytest.mark.slow
 @FAST
 @given(st.sampled_from(['f.csv', 'f.csv.gz', 'f.mcap', 'f.db3', 'f.ulg']),
        st.lists(st.tuples(st.floats(0, 1, exclude_max=True), st.binary(min_size=1, max_size=8)),
@@ -83,6 +86,7 @@ def test_topics_are_not_for_csv(tmp_path):
     refused(tmp_path / 'f.csv', 'columns', mapping=mapping_from(ALL_TOPICS, 'm'))
 
 
+@pytest.mark.slow
 @FAST
 @given(st.data())
 def test_any_numbers_have_findings_but_no_traceback(data):

@@ -100,6 +100,7 @@ def test_px4_without_odometry_is_read_from_position_and_attitude(tmp_path):
     agrees(read, PLACE, SPEED, ATTITUDE, RATE, FORCE, within=1e-5)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('odometry', [True, False])
 def test_the_resets_that_px4_counts_split_a_bag(tmp_path, odometry):
     """A step of 0.8 m, less than a jump that shows in the data."""

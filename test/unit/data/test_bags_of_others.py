@@ -39,6 +39,7 @@ def written(path, out):
     return load_mapping(out)
 
 
+@pytest.mark.slow
 def test_the_mapping_to_begin_with_reads_what_is_read_without_it(tmp_path):
     """MAVROS: a pose besides an attitude of the IMU, two rates, outputs in a field channels."""
     pwm = np.round(1000 + (FLIGHT.stack(*CMD) - 100) / 1.6).astype(np.uint16)
@@ -69,6 +70,7 @@ def test_a_bag_that_was_not_copied_whole_says_so_without_any_message(tmp_path):
     refused(cut, 'ends within its first message', 'copy it again')
 
 
+@pytest.mark.slow
 def test_lists_of_a_laboratory_are_named_as_outputs(tmp_path, types):
     speeds = FLIGHT.stack(*CMD)
     pwm = np.round(1000 + (speeds - 100) / 1.6).astype(np.uint16)

@@ -191,6 +191,7 @@ def test_a_run_that_goes_on_after_it_was_given_up():
     assert record.info['dropped'] == 0
 
 
+@pytest.mark.slow
 @given(st.sets(st.integers(0, 100)), st.sampled_from([0.0, 0.3, 0.5, 0.9]),
        st.integers(5, 120), st.booleans())
 @settings(max_examples=150, deadline=None)

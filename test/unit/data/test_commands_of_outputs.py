@@ -54,6 +54,7 @@ def refused(path, *words, vehicle=VEHICLE):
         assert word in message, message
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('kind', ['normalised', 'percent', 'pwm', 'duty16'])
 def test_the_kind_is_told_by_the_values_and_said(tmp_path, kind):
     low, high = KINDS[kind]
@@ -68,6 +69,7 @@ def test_the_kind_is_told_by_the_values_and_said(tmp_path, kind):
     assert [one['code'] for one in cautions(read, VEHICLE)] == ['commands']
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('kind', ['pwm', 'dshot'])
 def test_pwm_and_dshot_of_the_same_size_are_told_by_hover_or_refused(tmp_path, kind):
     low, high = KINDS[kind]
@@ -87,6 +89,7 @@ def test_pwm_and_dshot_that_hover_alike_are_refused(tmp_path):
     refused(with_outputs(tmp_path, values), 'PWM, 1000 to 2000 or DSHOT', vehicle=heavy)
 
 
+@pytest.mark.slow
 def test_signals_from_minus_one_to_one_are_not_taken_for_0_to_1(tmp_path):
     """Their lower half would read as motors that are off."""
     strong = replace(VEHICLE, speed_max=2500.0)
@@ -112,6 +115,7 @@ def test_signals_that_would_hover_from_minus_one_to_one_are_said_to(tmp_path, si
     assert ('motors: {kind: normalised, minimum: -1, maximum: 1}' in said) == signed
 
 
+@pytest.mark.slow
 def test_signals_that_a_mixer_has_not_limited_are_read_by_the_line_for_them(tmp_path):
     """Those below 0 are motors that are off; the same message has the line for either."""
     values = (SPEEDS - 100) / 1600
@@ -170,6 +174,7 @@ def test_doubtful_values_are_refused_with_the_lines_to_write(tmp_path):
     refused(with_outputs(tmp_path, 5000 * SHARES), 'are of no kind', 'minimum: ', 'maximum: ')
 
 
+@pytest.mark.slow
 def test_motors_that_are_not_those_of_the_record_are_refused(tmp_path):
     vehicle = replace(VEHICLE, motors=Motors('pwm', 1000.0, 2000.0))
     refused(with_outputs(tmp_path, np.round(65535 * SHARES)), 'pwm from 1000 to 2000',
@@ -195,6 +200,7 @@ def test_outputs_that_are_not_finite_are_motors_that_are_off():
         assert len(str(caught.value).splitlines()) == 1
 
 
+@pytest.mark.slow
 def test_more_or_fewer_outputs_than_rotors_are_refused(tmp_path):
     refused(with_outputs(tmp_path, SHARES[:, :3]), '3 outputs for the 4 rotors')
     refused(with_outputs(tmp_path, np.hstack([SHARES, SHARES[:, :1]])), 'outputs 1, 2, 3, 4, 5',
@@ -247,6 +253,7 @@ def test_kinds_without_a_vehicle_are_by_size_alone():
     assert kinds_of(np.zeros(3)) == () and kinds_of(np.array([np.nan, -1.0])) == ()
 
 
+@pytest.mark.slow
 def test_how_well_the_motors_are_known_says_nothing_of_commands_in_rad_s():
     """Nor where a mapping has the speeds: the map of the vehicle file had no part in them."""
     vehicle = replace(VEHICLE, motors=motors_from('v', {
@@ -274,6 +281,7 @@ def curves(record, vehicle=VEHICLE):
     return [found for found in findings(record, vehicle) if found.code == 'thrust_curve']
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('kind', ['normalised', 'percent', 'pwm', 'duty16'])
 def test_shares_of_thrust_that_were_taken_for_speeds_are_told_by_the_thrust(tmp_path, kind):
     low, high = KINDS[kind]
@@ -294,6 +302,7 @@ def test_shares_of_thrust_that_were_taken_for_speeds_are_told_by_the_thrust(tmp_
         assert np.median(read.stack(*CMD)) == pytest.approx(hover, rel=0.01)
 
 
+@pytest.mark.slow
 def test_shares_of_thrust_as_pwm_are_not_taken_for_dshot(tmp_path):
     """Their size is that of DSHOT near hover; how the thrust changes with them is not."""
     weak = replace(VEHICLE, speed_max=float(SPEEDS.max()) * 1.2, speed_min=0.0)
@@ -304,6 +313,7 @@ def test_shares_of_thrust_as_pwm_are_not_taken_for_dshot(tmp_path):
     assert 'kind: pwm, curve: thrust' in found.remedy
 
 
+@pytest.mark.slow
 def test_without_the_speed_at_full_signal_shares_of_thrust_are_told_as_well(tmp_path):
     unknown = replace(VEHICLE, speed_max=np.inf)
     for shares, known in ((SHARES_OF_THRUST, True), (SHARES, False)):
@@ -311,6 +321,7 @@ def test_without_the_speed_at_full_signal_shares_of_thrust_are_told_as_well(tmp_
         assert len(curves(read, unknown)) == known
 
 
+@pytest.mark.slow
 def test_a_reading_that_thrust_does_not_follow_is_not_the_right_one():
     """Signals that are clipped in it tell nothing of it, least of all that it fits."""
     iris = load_vehicle('iris')
@@ -326,6 +337,7 @@ def test_a_reading_that_thrust_does_not_follow_is_not_the_right_one():
     assert not curves(read, iris)
 
 
+@pytest.mark.slow
 def test_rotors_that_turn_at_no_signal_need_a_lowest_speed(tmp_path):
     """The line that says how to name shares of thrust says it, for such motors look alike."""
     idle = replace(VEHICLE, speed_min=500.0, speed_max=2000.0)
@@ -336,6 +348,7 @@ def test_rotors_that_turn_at_no_signal_need_a_lowest_speed(tmp_path):
     assert 'speed_min' in found.remedy
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('size', [1.0, 4.0, 0.05])
 def test_thrusts_in_newtons_are_refused_with_the_motors_that_read_them(tmp_path, size):
     """By their size alone they are of no kind, per cent or normalised."""
@@ -349,6 +362,7 @@ def test_thrusts_in_newtons_are_refused_with_the_motors_that_read_them(tmp_path,
     np.testing.assert_allclose(read.stack(*CMD), SPEEDS, rtol=1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('signals', [True, False])
 def test_too_much_thrust_by_signals_may_be_that_of_their_map(signals):
     """Rotors turn at full signal at two thirds of the speed that the vehicle file has."""

@@ -217,6 +217,7 @@ def flights(draw):
         for name in [*known, *unknown]})
 
 
+@pytest.mark.slow
 @FAST
 @given(flights(), st.sampled_from(['flight.csv', 'flight.csv.gz']))
 def test_round_trip(tmp_path, flight, name):
@@ -227,6 +228,7 @@ def test_round_trip(tmp_path, flight, name):
     assert 'truncated' not in again.info
 
 
+@pytest.mark.slow
 @FAST
 @given(st.one_of(
     st.binary(max_size=200),
@@ -245,6 +247,7 @@ def test_rubbish_only_ever_raises_input_error(tmp_path, content):
             assert len(flight) >= 2
 
 
+@pytest.mark.slow
 @FAST
 @given(st.lists(st.lists(st.text(st.sampled_from(list('0123456789.e-+ naif_x\u0661')), max_size=5),
                          min_size=2, max_size=2), min_size=2, max_size=4))
@@ -376,6 +379,7 @@ def test_a_picture_or_a_log_is_told_where_another_file_belongs(tmp_path, capsys,
         assert f'{name}: this is {what}; expected {wanted}' in capsys.readouterr().err
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('rows', [5_000, 40_000])
 def test_reading_takes_little_more_memory_than_the_record(tmp_path, rows):
     """So an hour at 100 Hz takes some hundred MB, not the gigabytes of a table of strings."""

@@ -83,6 +83,7 @@ def with_slopes(record, velocity, rate):
                    **dict(zip(W, rate.T, strict=True)))
 
 
+@pytest.mark.slow
 def test_info_finds_what_a_diagnosis_refuses_in_place_of_differences():
     """The noise of the differences hides it, and info had no error."""
     record = changed(flight(seconds=12.0, noise=10.0), ax=None, ay=None, az=None)

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """A specific force along the axes of the world, as one that was turned by the attitude already."""
 
+from functools import cache
+
 from flightmaker import changed, flight, VEHICLE
 import numpy as np
 import pytest
@@ -62,15 +64,22 @@ def test_it_is_told_of_angles_without_a_quaternion_too():
     assert told(record, VEHICLE) == ['force_in_world']
 
 
+@cache
+def flown(trajectory, effect):
+    """Return the iris, and its flight with an effect or none."""
+    vehicle = load_vehicle('iris')
+    effects = {'rotor_drag': {'coefficient': 0.15}} if effect else {}
+    effects |= {'wind': {'x': 4.0, 'y': -2.0}} if effect == 'wind' else {}
+    return vehicle, fly_closed_loop(vehicle, effects, trajectory, duration=12.0, seed=1,
+                                    noise=MOCAP_IMU)
+
+
 @pytest.mark.parametrize('groups', LEFT_OUT.values(), ids=LEFT_OUT)
 @pytest.mark.parametrize('trajectory', ['circle', 'lissajous', 'hover', 'chirp_yaw'])
 @pytest.mark.parametrize('effect', ['', 'rotor_drag', 'wind'])
 def test_drag_and_wind_are_not_taken_for_it(trajectory, effect, groups):
     """Thrust that holds against drag leans the body as much as it would to speed it up."""
-    vehicle = load_vehicle('iris')
-    effects = {'rotor_drag': {'coefficient': 0.15}} if effect else {}
-    effects |= {'wind': {'x': 4.0, 'y': -2.0}} if effect == 'wind' else {}
-    record = fly_closed_loop(vehicle, effects, trajectory, duration=12.0, seed=1, noise=MOCAP_IMU)
+    vehicle, record = flown(trajectory, effect)
     assert 'force_in_world' not in told(without(record, *groups), vehicle)
 
 
@@ -89,6 +98,7 @@ def test_another_heading_of_the_attitude_is_not_taken_for_it():
     assert 'heading' in found and 'force_in_world' not in found
 
 
+@pytest.mark.slow
 @needs_real_flights
 @pytest.mark.parametrize('name', ['star_fast', 'oval_fast'])
 @pytest.mark.parametrize('groups', LEFT_OUT.values(), ids=LEFT_OUT)

@@ -64,6 +64,7 @@ def test_a_twist_in_the_world_is_told_within_six_seconds(number):
     assert all('say frame: world' in one for one in said[6:])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('rate', [50.0, 100.0, 500.0])
 @pytest.mark.parametrize('number', range(4))
 def test_a_good_flight_is_not_doubted(number, rate):

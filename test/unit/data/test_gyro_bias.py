@@ -35,6 +35,7 @@ def test_the_bias_is_what_the_gyro_reads_at_rest():
     assert finding.severity == 'info' and 'for 3 s' in finding.message
 
 
+@pytest.mark.slow
 def test_a_diagnosis_has_it_though_it_leaves_the_ground_out():
     whole = biased(without(standing_first(brisk()), LONE))
     findings = take_in([whole], VEHICLE, None, RULES).findings

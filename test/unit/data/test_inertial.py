@@ -105,6 +105,7 @@ def test_vibration_is_no_blow():
     assert not resting(FlightRecord(t, shaken, record.info), IRIS).any()
 
 
+@pytest.mark.slow
 def test_what_needs_a_reference_says_so():
     lone = [bare(flown(seed=seed, duration=6.0)) for seed in range(2)]
     with pytest.raises(InputError, match=r'about steady wind \(wind\).*name other effects'):
@@ -113,6 +114,7 @@ def test_what_needs_a_reference_says_so():
         fit(lone[:1], IRIS, ['mass'])
 
 
+@pytest.mark.slow
 def test_the_drag_of_the_file_does_not_act_beside_the_air_of_the_record():
     """What a written vehicle explains is measured as the diagnosis is."""
     records = [bare(flown(seed=seed, duration=6.0)) for seed in range(2)]
@@ -131,6 +133,7 @@ def test_nothing_is_reckoned_over_a_gap():
     np.testing.assert_allclose(before, after, atol=1e-9)
 
 
+@pytest.mark.slow
 def test_flights_with_and_without_a_pose_do_not_mix():
     whole, lone = flown(duration=5.0), bare(flown(seed=1, duration=5.0))
     with pytest.raises(InputError, match='neither position nor velocity.*separately'):
@@ -143,7 +146,7 @@ def test_flights_with_and_without_a_pose_do_not_mix():
     {'thrust_scale': {'factor': 1.15}}], ids=lambda effects: next(iter(effects)))
 def test_what_motors_do_is_told_without_a_pose(effects):
     [(name, values)] = effects.items()
-    flights = [bare(flown(effects, path, seed, 20.0, noise=MOCAP_IMU))
+    flights = [bare(flown(effects, path, seed, 12.0, noise=MOCAP_IMU))
                for seed, path in enumerate(PATHS)]
     told = diagnose(flights, IRIS)
     row = next(row for row in told.ranking if row.effect == name)
@@ -170,7 +173,7 @@ def test_a_position_that_is_missing_is_the_integral_of_the_velocity():
 
 @pytest.mark.slow
 def test_a_drag_is_told_without_a_position():
-    flights = [flown({'rotor_drag': {'coefficient': 0.4}}, path, seed, 20.0, noise=MOCAP_IMU)
+    flights = [flown({'rotor_drag': {'coefficient': 0.4}}, path, seed, 12.0, noise=MOCAP_IMU)
                for seed, path in enumerate(('figure8', 'lissajous', 'low_passes'))]
     told = diagnose([FlightRecord(one.t, {name: values for name, values in one.columns.items()
                                           if name[0] != 'p'}, one.info) for one in flights], IRIS)

@@ -196,6 +196,7 @@ def test_on_a_full_disk_no_part_of_a_mapping_stays(tmp_path, capsys):
     assert info(capsys, tmp_path / 'f.csv', '--write-mapping', out)[0] == 0
 
 
+@pytest.mark.slow
 def test_the_mapping_of_a_log_names_its_kind_outputs_and_instances(tmp_path, capsys):
     """A Crazyflie's duty; an ArduPilot hexarotor's PWM, and its two IMUs."""
     pytest.importorskip('pymavlink', reason='pymavlink is not installed')

@@ -56,6 +56,7 @@ def test_the_unit_of_earlier_versions_is_told_by_what_turns_the_vehicle(name, ve
     assert [one.severity for one in told] == ['warning'] and 'N m' in told[0].remedy
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('factor', [0.8, 1.25])
 def test_an_inertia_that_is_off_does_not_change_the_unit(factor):
     record, vehicle = flight('closed_loop')
@@ -119,6 +120,7 @@ def test_the_arm_of_a_run_makes_forces_of_moments():
     assert list(columns).index('u2') == list(columns).index('u1') + 1
 
 
+@pytest.mark.slow
 def test_a_bag_carries_a_true_wrench(tmp_path):
     record, vehicle = flight('closed_loop')
     save(tmp_path / 'bag', record)

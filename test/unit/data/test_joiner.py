@@ -188,6 +188,7 @@ def test_it_tells_how_far_all_topics_are():
     assert joiner.has_reached(80 * MS) and not joiner.has_reached(90 * MS)
 
 
+@pytest.mark.slow
 def test_the_cost_does_not_grow_with_what_waits():
     """A topic that is far ahead and one that has lost a message: no work per waiting row."""
     joiner = Joiner('ab')

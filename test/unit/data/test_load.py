@@ -25,6 +25,7 @@ from quad_ident_ros.experiment import fly, load_experiment
 from quad_ident_ros.model.attitude import rotate
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('name', ['f.csv', 'f.csv.gz', 'f.mcap', 'folder'])
 def test_what_is_saved_reads_back_bit_for_bit(tmp_path, name):
     save(tmp_path / name, flight())
@@ -78,6 +79,7 @@ def test_a_written_bag_has_the_topics_that_people_know(tmp_path):
         record.stack('vx', 'vy', 'vz')[50], atol=1e-12)
 
 
+@pytest.mark.slow
 def test_the_topics_alone_make_the_flight_too(tmp_path):
     """A bag of our topics, without the exact record, joins into the same flight."""
     experiment = load_experiment('small_angle')
@@ -119,6 +121,7 @@ def test_other_endings_are_refused_for_writing(tmp_path):
         save(tmp_path / 'f.txt', SMALL)
 
 
+@pytest.mark.slow
 def test_a_bag_of_several_flights_is_split(tmp_path, capsys):
     experiment = load_experiment('small_angle')
     flights = [fly(experiment, run).record for run in experiment.runs[:2]]
@@ -145,6 +148,7 @@ def test_convert_says_what_it_wrote(tmp_path, capsys):
     same(load(done['file']), SMALL)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('name', ['bag', 'f.mcap'])
 def test_an_interrupted_conversion_leaves_nothing_and_can_be_repeated(tmp_path, name):
     def interrupt(share):
@@ -165,6 +169,7 @@ def test_a_folder_that_was_there_before_is_left_alone(tmp_path):
     assert (tmp_path / 'bag' / 'mine').read_text() == 'kept'
 
 
+@pytest.mark.slow
 def test_a_last_line_that_is_left_out_is_said(tmp_path, capsys):
     cut = tmp_path / 'f.csv'
     write_csv(cut, flight())

@@ -16,6 +16,7 @@ def few(monkeypatch):
     monkeypatch.setattr(series, 'MOST', 2000)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('seconds', [15.0, 30.0, 60.0])
 def test_the_whole_record_is_looked_at(seconds):
     record = flight(seconds=seconds, rate=250.0)

@@ -278,6 +278,7 @@ def counted(record, topic, rows, fields, counts):
                 {**FORMATS, topic: ('uint64_t timestamp', 'uint64_t timestamp_sample', *fields)})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('topic', ['vehicle_odometry', 'estimator_local_position'])
 def test_resets_count_of_the_topic_that_the_position_is_from(tmp_path, topic):
     """A step of 0.8 m, less than a jump that shows in the data; the attitude has its topic."""
@@ -304,6 +305,7 @@ def test_a_stamp_that_is_there_twice_hides_no_reset(tmp_path):
     assert len(load_all(log(tmp_path, data))) == 2
 
 
+@pytest.mark.slow
 def test_a_diagnosis_tells_of_commands_profile_estimates_and_resets(tmp_path):
     record = flight(seconds=20.0, noise=0.0)
     parts = load_all(log(tmp_path, reset_log(record, [6.0], [2.0])), None, VEHICLE)
@@ -403,6 +405,7 @@ def test_a_diagnosis_without_a_vehicle_says_what_the_log_could_fill_in(tmp_path,
     assert '--vehicle FILE' in said and 'auto' not in said
 
 
+@pytest.mark.slow
 def test_auto_tells_no_thrust_that_the_log_itself_set(tmp_path, capsys, monkeypatch):
     """The thrust coefficient then follows from the weight: a factor on it comes out as 1."""
     record = flight(seconds=6.0, noise=0.0)

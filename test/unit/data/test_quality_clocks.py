@@ -36,6 +36,7 @@ def test_an_offset_is_estimated_to_a_fraction_of_a_sample(offset):
     assert finding.severity == ('error' if abs(offset) > 0.1 else 'warning')
 
 
+@pytest.mark.slow
 def test_a_drift_is_estimated_with_its_uncertainty():
     record = late(flight(seconds=60.0), (*P, *V, *Q), 0.02, 0.001)
     clock = clock_offset(record)
@@ -70,6 +71,7 @@ def test_standard_errors_know_that_an_autopilot_follows_errors_of_the_attitude(t
     assert np.sqrt(np.mean(np.square(pulls))) < 1.5
 
 
+@pytest.mark.slow
 def test_a_wandering_offset_is_found():
     record = flight(seconds=60.0)
     at = record.t - 0.02 * np.sin(2 * np.pi * record.t / 30)
@@ -85,6 +87,7 @@ def test_commands_that_act_before_they_are_given_are_found():
     assert 'command_offset' in codes(record)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('effects', [
     {'rotor_drag': {'x': 0.3, 'y': 0.3, 'z': 0.3}},
     {'body_drag': {'horizontal': 0.1, 'vertical': 0.1}},
@@ -99,16 +102,19 @@ def test_a_force_of_the_air_along_z_is_no_early_thrust(trajectory, effects):
     assert clock is None or abs(clock.offset) < 4 * clock.std
 
 
+@pytest.mark.slow
 def test_the_lag_of_motors_is_no_fault():
     record = late(flight(), (*P, *V, *Q, *W, *A), 0.04)
     assert abs(command_offset(record).offset - 0.04) < 0.008
     assert 'command_offset' not in codes(record)
 
 
+@pytest.mark.slow
 def test_a_thrust_later_than_motors_take_is_found():
     assert 'command_offset' in codes(late(flight(), (*P, *V, *Q, *W, *A), 0.25))
 
 
+@pytest.mark.slow
 @needs_real_flights
 @pytest.mark.parametrize('name', ['star_fast', 'oval_fast'])
 def test_an_offset_put_into_a_real_flight_is_found(name):

@@ -143,6 +143,7 @@ def test_saturated_commands_are_found():
     assert share == pytest.approx(100 * (clipped >= limit - 2.0).any(axis=1).mean(), abs=0.3)
 
 
+@pytest.mark.slow
 def test_an_order_that_another_flight_refutes_is_a_warning():
     """Rotors do not change places: one flight that shows the order is right speaks for all."""
     right = replace(flight(), info={**flight().info, 'name': 'right'})
@@ -157,6 +158,7 @@ def test_an_order_that_another_flight_refutes_is_a_warning():
     assert cautions(right, VEHICLE, refuted([wrong, right], VEHICLE)) == []
 
 
+@pytest.mark.slow
 def test_the_order_that_a_mapping_has_to_give_is_named(tmp_path):
     """Outputs of another order, which the lines of the remedy put into that of the rotors."""
     record = flight()
@@ -179,6 +181,7 @@ def mirrored(vehicle):
                                          for rotor in vehicle.rotors))
 
 
+@pytest.mark.slow
 def test_a_flight_that_hardly_yaws_says_nothing_of_the_spins():
     vehicle = load_vehicle('hummingbird')
     straight, turning = (fly_closed_loop(vehicle, {}, name, duration=20.0, seed=1,
@@ -192,6 +195,7 @@ def test_a_flight_that_hardly_yaws_says_nothing_of_the_spins():
         cautions(turning, wrong, told)
 
 
+@pytest.mark.slow
 def test_a_slow_turn_tells_the_spins_through_the_noise_of_a_gyro():
     vehicle = load_vehicle('hummingbird')
     record = fly_closed_loop(vehicle, {}, 'lissajous', duration=20.0, seed=1)
@@ -201,6 +205,7 @@ def test_a_slow_turn_tells_the_spins_through_the_noise_of_a_gyro():
     assert 'rotor_spin' not in [one.code for one in findings(noisy, vehicle)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('leak', [0.6, 1.0])
 def test_spins_that_explain_most_of_the_yaw_are_no_error_for_what_other_moments_add(leak):
     """A moment about z that goes with the roll looks like other spins of a hexacopter, too."""
@@ -223,6 +228,7 @@ OTHER = replace(VEHICLE, name='other', mass=1.5, speed_max=2500.0,
 """A vehicle of three times the mass, whose rotors have the same places."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('thrust', [0.4, 2.5])
 def test_a_vehicle_file_of_another_vehicle_is_told_by_its_thrust(thrust):
     wrong = replace(VEHICLE, thrust_coefficient=thrust * VEHICLE.thrust_coefficient,
@@ -262,6 +268,7 @@ def test_a_payload_or_a_battery_makes_no_other_vehicle(thrust):
     assert findings(flight(), file) == ()
 
 
+@pytest.mark.slow
 def test_info_and_diagnose_say_the_same_of_another_vehicle(tmp_path, capsys):
     """A warning, or where the rotors are in other places as well an error, of the same words."""
     paths = [str(tmp_path / f'{name}.csv') for name in 'ab']
@@ -322,6 +329,7 @@ def precessing(hertz, late):
                             **named(CMD, np.sqrt(squared).T)}, {'name': 'precessing'})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('hertz', [1.6, 2.5])
 @pytest.mark.parametrize('late', [-0.06, 0.0, 0.06])
 def test_a_clock_that_is_off_is_no_other_order_of_the_rotors(hertz, late):
@@ -329,6 +337,7 @@ def test_a_clock_that_is_off_is_no_other_order_of_the_rotors(hertz, late):
     assert 'rotor_order' not in [one.code for one in findings(precessing(hertz, late), VEHICLE)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(('size', 'code'), [(2.0, 'saturation'), (0.6, 'other_vehicle')])
 def test_rotor_speeds_beside_a_simulator_whose_commands_are_thrusts_are_told_from_them(size, code):
     """Its file has no speeds; one that stands for the most thrust is taken, and is not theirs."""

@@ -49,6 +49,7 @@ GRAVE = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('fault', GRAVE)
 def test_a_record_without_a_stream_bears_no_verdict(fault):
     record = changed(flight(), vbat=np.full(len(flight()), 16.0))
@@ -58,9 +59,14 @@ def test_a_record_without_a_stream_bears_no_verdict(fault):
     assert found.severity == 'error'
     with pytest.raises(InputError):
         cautions(wrong, VEHICLE)
+
+
+def test_the_record_with_all_its_streams_bears_one():
+    record = changed(flight(), vbat=np.full(len(flight()), 16.0))
     assert cautions(record, VEHICLE) == []
 
 
+@pytest.mark.slow
 def test_a_voltage_that_drops_out_is_a_warning():
     """The median of it is that of the battery."""
     record = flight()
@@ -88,6 +94,7 @@ def test_few_samples_a_second_are_a_warning():
     assert '0.05 s' in found['message']
 
 
+@pytest.mark.slow
 def test_a_vehicle_that_stands_needs_no_thrust():
     """Records begin on the ground, with the motors off."""
     record = flight()

@@ -131,6 +131,7 @@ def test_every_reader_splits_where_the_data_jump(tmp_path):
     assert str(tmp_path / 'f.csv') in other.info['source']
 
 
+@pytest.mark.slow
 @needs_real_flights
 def test_real_flights_have_no_jumps():
     for path in sorted(NANOBENCH.glob('*.csv.gz')):

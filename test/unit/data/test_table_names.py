@@ -210,6 +210,7 @@ def test_lists_that_lack_rows_and_categories_in_parquet(tmp_path):
     np.testing.assert_allclose(second.stack('output1', 'output2'), np.array(motors)[1::2, :2])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('names, span', [
     (('motor_front_left', 'motor_rear_left', 'motor_rear_right', 'motor_front_right'), 1.0),
     (('motor.m4', 'motor.m3', 'motor.m2', 'motor.m1'), 65535.0)])

@@ -52,6 +52,7 @@ def test_a_count_of_which_nothing_shows_the_rate_is_refused(tmp_path, groups, he
                   't: {column: ', 'unit: 100 Hz}, or unit: ms')
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('groups', [(), (A,), (V,), (W,), (V, A), (V, W, A), (P, W)])
 @pytest.mark.parametrize('head', ['t', 'frame'])
 def test_milliseconds_at_1_kHz_are_read_where_the_other_columns_show_it(tmp_path, groups, head):
@@ -115,6 +116,7 @@ def test_times_of_more_than_10_kHz_are_not_taken_for_seconds(tmp_path):
     refused(path, "t: the unit of 'time'")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('apart', [1e-3, 1e-4, 2e-5])
 @pytest.mark.parametrize('frame', ['world', 'body'])
 def test_rows_of_several_streams_may_come_in_bursts(tmp_path, frame, apart):

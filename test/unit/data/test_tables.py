@@ -542,6 +542,7 @@ def test_without_pyarrow_the_extra_is_named(tmp_path, monkeypatch):
     refused(tmp_path / 'f.parquet', 'quad_ident_ros[parquet]', 'pyarrow')
 
 
+@pytest.mark.slow
 def test_mutated_tables_are_read_or_refused_in_a_line(tmp_path):
     chance = random.Random(5)
     short = {name: values[:12] for name, values in others().items()}

@@ -389,6 +389,7 @@ def test_a_velocity_that_is_all_noise_in_hover_has_the_usual_unit(tmp_path, nois
     np.testing.assert_allclose(load(table(tmp_path, hover)).stack(*SPEED), speed, atol=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('size', [0.4, 1.0, 2.5])
 @pytest.mark.parametrize('turned', [False, True])
 def test_an_acceleration_without_gravity_is_no_specific_force_in_any_unit(tmp_path, size, turned):
@@ -475,6 +476,7 @@ def test_a_time_of_any_name_is_told_by_its_steps_and_a_count_is_none(tmp_path):
             'no column of a time that rises', 'add one in s')
 
 
+@pytest.mark.slow
 def test_names_of_ours_do_not_hide_those_of_others(tmp_path):
     """A table with t and wx, wy, wz is one of others where it has its pose by other names."""
     found = {'t': T, **columns('', 'xyz', PLACE), **columns('w', 'xyz', RATE)}
@@ -485,6 +487,7 @@ def test_names_of_ours_do_not_hide_those_of_others(tmp_path):
     refused(table(tmp_path, found | one | two), 'one.q1', 'or two.q1')
 
 
+@pytest.mark.slow
 def test_sizes_that_are_no_unit_are_doubted(tmp_path):
     found = {'time': T, **columns('p', 'xyz', PLACE), **columns('v', 'xyz', SPEED),
              **columns('q', 'wxyz', Q), **columns('gyro_', 'xyz', RATE)}
@@ -750,6 +753,7 @@ def test_german_places_of_motors_are_known(tmp_path):
     np.testing.assert_allclose(outputs, 1000 + FLIGHT.stack(*CMD) / 2)
 
 
+@pytest.mark.slow
 def test_states_and_commands_in_two_files_say_the_way_out_which_works(tmp_path):
     states = {'time': T, **columns('', 'xyz', PLACE), **columns('q', 'wxyz', Q)}
     motors = {'time': T, **columns('m', '1234', CMD)}
@@ -768,6 +772,7 @@ def test_states_and_commands_in_two_files_say_the_way_out_which_works(tmp_path):
     assert load(table(tmp_path, joined), vehicle=VEHICLE).has('px', 'qw', 'cmd4')
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('noise', [0.0, 1.0])
 def test_a_world_with_y_up_is_told_and_the_mapping_of_the_remedy_reads_it(tmp_path, noise):
     record = flight(seconds=10.0, rate=100.0, noise=noise)

@@ -62,6 +62,7 @@ def test_the_axes_of_the_velocity_do_not_matter(yaw):
     assert 'time_scale' in codes(timed(record, record.t / 60))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('trajectory', ['hover', 'circle', 'lissajous', 'chirp_z', 'steps'])
 @pytest.mark.parametrize('sensors', SENSORS)
 def test_right_flights_have_no_such_finding(trajectory, sensors):

@@ -92,6 +92,7 @@ def test_the_faster_link_may_be_the_upper_one(tmp_path):
     agrees(read, kept)
 
 
+@pytest.mark.slow
 def test_a_transform_that_does_not_change_is_read_beside_them(tmp_path):
     """It is published once, on /tf_static, and holds for the whole flight."""
     place, attitude = (np.tile(part, (len(SMALL), 1)) for part in MOUNT)
@@ -246,6 +247,7 @@ def test_a_live_clock_that_begins_anew_begins_the_poses_anew(topics):
     assert [stamp for stamp, _ in found] == flown()[0].tolist() and count == len(found)
 
 
+@pytest.mark.slow
 def test_live_transforms_are_forgotten(topics):
     """The memory does not grow with the flight, nor while the frame above is silent."""
     _, _, _, sent = flown(count=3000)
@@ -293,6 +295,7 @@ def test_live_transforms_that_come_to_nothing_are_counted(topics):
     assert topics.left_out(end=True) == {}
 
 
+@pytest.mark.slow
 def test_what_waits_when_a_live_clock_begins_anew_is_counted_as_dropped(topics):
     begin = START + 100 * 10 ** 9
     at, _, _, sent = flown(begin)

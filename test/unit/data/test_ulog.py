@@ -32,6 +32,7 @@ def test_a_px4_log_gives_the_flight_in_enu_and_flu(tmp_path):
     np.testing.assert_allclose(np.abs(np.sum(q * truth, axis=1)), 1.0, atol=1e-12)
 
 
+@pytest.mark.slow
 def test_a_converted_px4_log_has_no_faults(tmp_path):
     """A clean flight stays one through frames, units, motor order and single precision."""
     record = flight()

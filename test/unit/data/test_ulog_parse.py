@@ -64,6 +64,7 @@ def test_a_log_that_ends_within_a_message_says_so(tmp_path, kept):
     assert within.info['notes'] == [CUT_OFF, *between.info['notes']]
 
 
+@pytest.mark.slow
 def test_damaged_logs_are_what_pyulog_makes_of_them(tmp_path):
     chance, read = random.Random(7), 0
     for _ in range(300):

@@ -98,6 +98,7 @@ def test_a_chunk_is_unpacked_to_the_size_that_it_states_and_no_further(pack):
         tracemalloc.stop()
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures('small')
 @pytest.mark.parametrize('line', [b'0' * 100, b'0,0\n'])
 def test_a_csv_that_unpacks_to_anything_is_refused(tmp_path, line):
@@ -108,6 +109,7 @@ def test_a_csv_that_unpacks_to_anything_is_refused(tmp_path, line):
         load(path)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('packing', [None, Writer1.CompressionFormat.BZ2])
 def test_bags_of_ros1_with_one_topic_after_the_other_unpack_each_chunk_once(
         tmp_path, monkeypatch, packing):

@@ -52,6 +52,7 @@ def codes(record):
     return {one.code for one in findings(record, None)} & TOLD
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('run', range(4))
 def test_a_twist_in_the_world_is_told(run):
     record = flown(run)
@@ -60,6 +61,7 @@ def test_a_twist_in_the_world_is_told(run):
     assert 'velocity_in_world' in codes(taken_for_body(record, V, W))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('run', [0, 1])     # the others hardly yaw, and their rates differ little
 def test_rates_alone_are_told_where_the_vehicle_yaws(run):
     assert codes(taken_for_body(flown(run), W)) == {'rate_in_world'}

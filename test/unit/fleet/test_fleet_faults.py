@@ -15,12 +15,14 @@ import sys
 
 import pytest
 
+from quad_ident_ros.cli.main import main
 from quad_ident_ros.data.csv import write_csv
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import SENSORS
 from quad_ident_ros.model.vehicle import load_vehicle
 
 pytest.importorskip('distributed', reason="Dask is not installed: pip install '.[fleet]'")
+from quad_ident_ros.cluster import cluster  # noqa: E402, I100
 from quad_ident_ros.fleet.store import read_table  # noqa: E402, I100
 
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group('dask')]
@@ -42,6 +44,13 @@ def folder(tmp_path_factory):
     return top
 
 
+@pytest.fixture(scope='module')
+def idle():
+    """Give the address of a scheduler whose workers no test ends: each start takes seconds."""
+    with cluster(workers=2) as client:
+        yield client.scheduler.address
+
+
 class Runs:
     """Processes that a test starts; those that are left at the end are killed."""
 
@@ -61,6 +70,14 @@ class Runs:
         """Start `quad_ident fleet` on the flights."""
         return self.start('-m', 'quad_ident_ros', 'fleet', str(self.folder), '--vehicle',
                           'hummingbird', '-o', str(self.out), '--json', '-', *arguments, **options)
+
+    def again(self, scheduler, capsys):
+        """Run `quad_ident fleet` in this process; return what `ended` does."""
+        capsys.readouterr()
+        code = main(['fleet', str(self.folder), '--vehicle', 'hummingbird', '-o', str(self.out),
+                     '--json', '-', '--scheduler', scheduler])
+        said, errors = capsys.readouterr()
+        return code, json.loads(said.splitlines()[-1]) if said else None, errors
 
     def close(self):
         """Kill the processes that remain."""
@@ -103,7 +120,8 @@ def check_complete(folder, out):
     assert not list((Path(out) / '.unfinished').iterdir())
 
 
-def test_a_worker_and_the_client_are_killed_and_no_flight_is_lost(runs, folder, tmp_path):
+def test_a_worker_and_the_client_are_killed_and_no_flight_is_lost(runs, folder, tmp_path,
+                                                                  capsys):
     where = tmp_path / 'scheduler.json'
     runs.start('-m', 'distributed.cli.dask_scheduler', '--port', '0', '--no-dashboard',
                '--scheduler-file', str(where))
@@ -118,7 +136,7 @@ def test_a_worker_and_the_client_are_killed_and_no_flight_is_lost(runs, folder, 
     next(lines_of(run))
     run.send_signal(signal.SIGKILL)
     run.communicate()
-    code, whole, errors = ended(runs.fleet('--scheduler', address))
+    code, whole, errors = runs.again(address, capsys)
     assert code == 0, errors
     assert whole['groups']['diagnosed'] == FLIGHTS and whole['before'] >= 2
     check_complete(folder, runs.out)
@@ -156,12 +174,13 @@ def test_ctrl_c_ends_a_run_in_one_line(runs):
     assert 'Traceback' not in errors
 
 
-def test_a_full_disk_is_said_in_one_line_and_the_run_goes_on_later(runs, folder):
+def test_a_full_disk_is_said_in_one_line_and_the_run_goes_on_later(runs, folder, idle,
+                                                                   capsys):
     full = runs.start('-c', LIMITED, str(folder), str(runs.out))
     code, _, errors = ended(full)
     assert code == 2 and 'Traceback' not in errors
     assert 'flights' in errors.splitlines()[-1] and 'File too large' in errors.splitlines()[-1]
-    code, whole, errors = ended(runs.fleet('--workers', '2'))
+    code, whole, errors = runs.again(idle, capsys)
     assert code == 0, errors
     check_complete(folder, runs.out)
 
@@ -211,7 +230,7 @@ mount -o remount,size=64m "$disk" || exit 98
 """
 
 
-def test_what_takes_too_long_is_recorded_and_tried_again(runs, tmp_path):
+def test_what_takes_too_long_is_recorded_and_tried_again(runs, tmp_path, idle, capsys):
     # What is done within the grace of a few seconds counts as done: eight minutes take longer.
     runs.folder = tmp_path / 'long'
     for seed in range(4):
@@ -223,12 +242,12 @@ def test_what_takes_too_long_is_recorded_and_tried_again(runs, tmp_path):
     assert whole['groups']['timeout'] == 1
     reasons = read_table(runs.out, 'groups', ['reason'])['reason'].to_pylist()
     assert reasons == ['it took more than 0.5 s (--time-limit)']
-    code, whole, errors = ended(runs.fleet('--workers', '1'))
+    code, whole, errors = runs.again(idle, capsys)
     assert code == 0, errors
     assert read_table(runs.out, 'groups', ['status'])['status'].to_pylist() == ['diagnosed']
 
 
-def test_what_is_done_is_not_done_again_and_new_flights_are(runs, folder, tmp_path):
+def test_what_is_done_is_not_done_again_and_new_flights_are(runs, folder, tmp_path, idle, capsys):
     some = [str(path) for path in sorted(folder.rglob('*.csv'))]
     manifest = tmp_path / 'manifest.csv'
 
@@ -237,7 +256,7 @@ def test_what_is_done_is_not_done_again_and_new_flights_are(runs, folder, tmp_pa
             f'{path},{Path(path).parts[-3]},{20 + number}\n'
             for number, path in enumerate(paths)), encoding='utf-8')
         runs.folder = manifest
-        code, whole, errors = ended(runs.fleet('--workers', '1'))
+        code, whole, errors = runs.again(idle, capsys)
         assert code == 0, errors
         return whole
 

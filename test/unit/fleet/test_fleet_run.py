@@ -474,6 +474,7 @@ def test_flights_that_nothing_dates_but_their_files_are_named(flight, monkeypatc
                              ).undated == (str(loose),)
 
 
+@pytest.mark.slow
 def test_findings_are_of_the_flight_whose_file_has_them(tmp_path, monkeypatch):
     """Also of two files with one name, and of one that is split where its estimator was reset."""
     nominal = load_vehicle('hummingbird')
@@ -508,6 +509,7 @@ def test_findings_are_of_the_flight_whose_file_has_them(tmp_path, monkeypatch):
     assert any(one.startswith('2/flight (2 parts): ') for one in of_group)
 
 
+@pytest.mark.slow
 def test_folders_that_may_be_of_several_vehicles_are_named(tmp_path, monkeypatch):
     """As of months of vehicles, and of a folder with the same name for each vehicle."""
     caught(monkeypatch, lambda given, item: given(item))

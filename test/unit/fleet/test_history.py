@@ -35,6 +35,7 @@ def test_false_alarms_are_as_rare_as_stated(count, told, scatter):
     assert false <= binom.ppf(0.999, fleets, FALSE)
 
 
+@pytest.mark.slow
 def test_flights_that_are_off_by_themselves_are_no_change():
     """One wrong log in twenty gives no alarm, and is named."""
     rng = np.random.default_rng(5)
@@ -48,6 +49,7 @@ def test_flights_that_are_off_by_themselves_are_no_change():
     assert all({4, 17} <= set(one.odd) for one in found)
 
 
+@pytest.mark.slow
 def test_a_change_is_dated_within_two_flights_among_many_that_have_none():
     """A step of three times the scatter between flights is found, and nothing else."""
     rng = np.random.default_rng(6)
@@ -143,7 +145,7 @@ def test_days_that_differ_are_no_change(apart):
     Six vehicles with five flights on each of six days; of 40 such fleets 28 had one where each
     flight was held against single flights alone, and days differed by twice what these do.
     """
-    fleets = 40
+    fleets = 20
     false = sum(alarms(histories([in_days(rng, 6, 5, apart=apart) for _ in range(6)])) > 0
                 for rng in map(np.random.default_rng, range(fleets)))
     assert false <= binom.ppf(0.999, fleets, FALSE)

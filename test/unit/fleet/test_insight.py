@@ -112,6 +112,7 @@ def test_the_list_begins_with_what_gets_worse(found):
     assert 'each with values of its own' in shared['com_offset']
 
 
+@pytest.mark.slow
 def test_a_drift_that_most_vehicles_have_alike_is_one_entry(tmp_path):
     """In spring the thrust of all falls with the density of the air; of one it falls faster."""
     data_set(tmp_path, slopes=[(f'uav{number}', 'thrust_scale', 'factor',
@@ -124,6 +125,7 @@ def test_a_drift_that_most_vehicles_have_alike_is_one_entry(tmp_path):
     assert 'temperature' in shared.text
 
 
+@pytest.mark.slow
 def test_a_drift_of_a_few_vehicles_is_theirs(tmp_path):
     data_set(tmp_path, slopes=[(f'uav{number}', 'thrust_scale', 'factor', -0.005)
                                for number in range(1, 5)])
@@ -131,6 +133,7 @@ def test_a_drift_of_a_few_vehicles_is_theirs(tmp_path):
         'uav1', 'uav2', 'uav3', 'uav4']
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(('odd', 'last'), [((), True), (
     [('uav4', 'com_offset', 'x', 0.02)], False)])
 def test_what_verdicts_may_take_for_an_effect_of_most_vehicles_comes_last(tmp_path, odd, last):
@@ -148,6 +151,7 @@ def test_what_verdicts_may_take_for_an_effect_of_most_vehicles_comes_last(tmp_pa
     assert ('does not differ from its sisters' in one.text) == last
 
 
+@pytest.mark.slow
 def test_what_is_sure_and_in_no_verdict_comes_last(tmp_path):
     """Other than of thrust, a drift that no verdict names hardly moves the vehicle."""
     data_set(tmp_path, slopes=[('uav5', 'com_offset', 'x', 2e-3)], wrong=[WRONG])
@@ -159,6 +163,7 @@ def test_what_is_sure_and_in_no_verdict_comes_last(tmp_path):
     assert last.text.endswith('; no verdict names it, so it matters little')
 
 
+@pytest.mark.slow
 def test_the_data_is_json_of_its_schema(found):
     """as_data() has plain values alone, and the same events."""
     data = json.loads(json.dumps(finite(found.as_data()), allow_nan=False))
@@ -215,6 +220,7 @@ def test_names_are_text_on_the_page(tmp_path):
     assert '<b>"x' not in text and '<td class="prose"><script>' not in text
 
 
+@pytest.mark.slow
 def test_a_drift_towards_no_effect_does_not_get_worse(tmp_path):
     """A drag that falls does; it is no less sure, and no more urgent than a change."""
     data_set(tmp_path, slopes=[('uav5', 'rotor_drag', 'coefficient', -0.004)],
@@ -233,6 +239,7 @@ def test_what_verdicts_let_differ_by_flight_matters_without_being_named(effect, 
     assert one.kind == 'drift' and one.material == material
 
 
+@pytest.mark.slow
 def test_thrust_that_its_sisters_do_not_have_matters_though_no_verdict_names_it(tmp_path):
     data_set(tmp_path, odd=[('uav7', 'thrust_scale', 'factor', -0.2)])
     one, = (one for one in points(insight(tmp_path)) if one.where == 'uav7')
@@ -282,6 +289,7 @@ def test_what_failed_is_not_called_refused(tmp_path):
     assert '1 flight refused, 2 not diagnosed' in summary_line(found)
 
 
+@pytest.mark.slow
 def test_vehicles_are_named_with_their_configuration(tmp_path):
     """What holds for one of several configurations is not said of all."""
     data_set(tmp_path, steps=[STEP], configuration='long')
@@ -342,6 +350,7 @@ def test_how_far_it_is_can_be_followed(tmp_path):
     assert told == [(number, 6) for number in range(6)]
 
 
+@pytest.mark.slow
 def test_a_new_vehicle_file_is_no_change_of_the_vehicle(tmp_path):
     """Values are relative to the nominal vehicle: those of an older one are not compared."""
     step = ('uav3', 'thrust_scale', 'factor', 10, 0.05)

@@ -37,6 +37,7 @@ def test_presence_is_the_mean_over_vehicles_with_some_doubt(taught):
     assert set(taught) == {'rotor_drag', 'com_offset'}
 
 
+@pytest.mark.slow
 def test_what_the_flights_of_a_vehicle_cannot_show_is_not_taken_for_absent(tmp_path):
     """Without position and velocity, drag has no row: such a vehicle says nothing of it."""
     data_set(tmp_path)
@@ -68,6 +69,7 @@ def test_flights_that_are_all_refused_are_not_blamed_on_priors(tmp_path):
         effects_without_priors(tmp_path)
 
 
+@pytest.mark.slow
 def test_vehicles_without_an_effect_do_not_say_how_large_it_is(tmp_path):
     """Thrust is tracked in all: a thousand that have none would leave the next no room for it."""
     data_set(tmp_path, odd=[('uav7', 'thrust_scale', 'factor', -0.2)])
@@ -81,6 +83,7 @@ def test_vehicles_without_an_effect_do_not_say_how_large_it_is(tmp_path):
     assert found['thrust_scale'].sizes['factor'] == pytest.approx(0.2, abs=0.03)
 
 
+@pytest.mark.slow
 def test_sizes_are_those_of_the_vehicles(taught):
     """How far the parameters usually are from no effect, of drag of one sign and of an offset."""
     _, mean, spread, _ = TRACKED['rotor_drag', 'coefficient']

@@ -28,6 +28,7 @@ def same(one, other):
         other.changes, other.drift, other.odd, other.level, other.std)
 
 
+@pytest.mark.slow
 def test_a_drift_in_a_spring_that_gets_warmer_is_found_by_what_sisters_know():
     """By itself its probability is below what is reported."""
     fleet = in_spring(np.random.default_rng(3), 10, 18, weather=1.5)
@@ -66,13 +67,14 @@ def test_false_alarms_are_as_rare_as_stated(vehicles, flights, options):
     Also where one vehicle or three follow no temperature, where each follows it by another share,
     and where temperatures are told badly.
     """
-    fleets = 60
+    fleets = 30
     false = sum(alarms(shared_histories(in_spring(
         np.random.default_rng([2, seed]), vehicles, flights, **options))) > 0
         for seed in range(fleets))
     assert false <= binom.ppf(0.999, fleets, FALSE)
 
 
+@pytest.mark.slow
 def test_a_drift_of_all_that_goes_with_the_temperature_is_not_sure():
     """Where days are as warm as the season, nobody can tell: of neither is anything said."""
     found = []
@@ -84,6 +86,7 @@ def test_a_drift_of_all_that_goes_with_the_temperature_is_not_sure():
     assert alarms(found) == 0
 
 
+@pytest.mark.slow
 def test_a_drift_of_all_is_not_lost_where_each_vehicle_shows_it():
     """Days that are warm and cold tell it from the temperature: sisters do not hide it."""
     fleet = in_spring(np.random.default_rng(4), 8, 24, weather=5.0)

@@ -151,6 +151,7 @@ def test_speeds_in_place_of_commands_take_no_effect_but_those_of_motors_with_the
     assert row['effect'] == 'rotor_drag' and row['value'] == pytest.approx(0.2, abs=0.02)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('kind', ['scaled by the weight', 'without a pose'])
 def test_a_flight_that_can_show_nothing_is_no_log_to_check(group, tmp_path, monkeypatch, kind):
     """Beside one of the same vehicle that shows thrust, such a log was called different."""
