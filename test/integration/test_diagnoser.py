@@ -17,6 +17,7 @@ import yaml
 
 from quad_ident_ros.data.commands import with_commands
 from quad_ident_ros.data.record import EULER, FlightRecord, QUATERNION
+from quad_ident_ros.errors import InputError
 from quad_ident_ros.experiment import fly, load_experiment
 from quad_ident_ros.model.attitude import rotate
 from quad_ident_ros.model.motors import motors_from, MOTORS_OFF
@@ -100,7 +101,8 @@ def test_outputs_of_motors_are_taken_by_the_motors_of_the_vehicle_file(graph, tm
     vehicle = load_vehicle(NOMINAL)
     speeds = {'kind': 'normalised', 'speed': {'offset': 50, 'gain': 1100}}
     write_vehicle(tmp_path / 'v.yaml', replace(vehicle, motors=motors_from('v', speeds)))
-    bench = Bench(graph, {'vehicle': str(tmp_path / 'v.yaml')})
+    bench = Bench(graph, {'vehicle': str(tmp_path / 'v.yaml'),
+                          'effects': ['rotor_drag', 'motor_lag', 'thrust_scale']})
     records = []
     for record in draggy:
         columns = {name: values for name, values in with_commands(record, vehicle).columns.items()
@@ -229,15 +231,14 @@ def test_it_ends_while_it_diagnoses(graph, draggy):
     assert time.monotonic() - began < 10.0
 
 
-def test_a_vehicle_that_cannot_be_used_is_refused_in_one_line(processes, tmp_path):
+def test_a_vehicle_that_cannot_be_used_is_refused_in_one_line(graph, tmp_path):
     path = tmp_path / 'drone.urdf'
     path.write_text('<robot name="empty"/>')
     for vehicle, said in (('hummingbrd', "'hummingbrd' is not among the vehicles"),
                           (str(path), 'drone.urdf')):
-        process = processes.start('diagnoser', {'vehicle': vehicle})
-        assert process.wait(PATIENCE) == 2
-        [line] = process.errors().splitlines()
-        assert line.startswith('diagnoser: error: ') and said in line
+        with pytest.raises(InputError) as caught:
+            graph.start(Diagnoser, {'vehicle': vehicle})
+        assert said in str(caught.value) and '\n' not in str(caught.value)
 
 
 def test_flights_that_are_too_short_are_refused_in_one_line(graph):

@@ -14,6 +14,7 @@ import pytest
 from rcl_interfaces.msg import Log
 from std_msgs.msg import Float64MultiArray, String
 
+from quad_ident_ros.cli.main import main
 from quad_ident_ros.data.replay import read_bag
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import load_vehicle
@@ -93,10 +94,11 @@ def test_everything_of_a_run_is_in_a_folder_that_no_other_run_has(demo, tmp_path
 @pytest.mark.parametrize('words, said', [
     (['--experiment', 'hover_single_axis'], '--gap needs flights in closed loop'),
     (['--seed', '-1'], 'must not be negative')])
-def test_what_cannot_be_is_refused_in_one_line(tmp_path, words, said):
-    done = run(*words, '-o', str(tmp_path))
-    [line] = done.stderr.splitlines()
-    assert done.returncode == 2 and line.startswith('quad_ident demo: error: ') and said in line
+def test_what_cannot_be_is_refused_in_one_line(tmp_path, capsys, words, said):
+    assert main(['demo', '--gap', *words, '-o', str(tmp_path)]) == 2
+    [line] = capsys.readouterr().err.splitlines()
+    assert line.startswith('quad_ident demo: error: ') and said in line
+    assert not list(tmp_path.iterdir())
 
 
 def test_what_the_diagnoser_refuses_is_what_the_demo_ends_with():

@@ -23,29 +23,13 @@ from quad_ident_ros.nodes.qos import latched
 NODES = {'simulator': simulator, 'recorder': recorder, 'identifier': identifier,
          'diagnoser': diagnoser}
 
-# What is said, by node and parameters; more of them are in test_bad_parameters.py.
+# What is said, by node and parameters; all others are in test_bad_parameters.py, in one process.
 REFUSED = {
-    'simulator': [
-        ({'experiment': 'nonsense'}, "'nonsense' is not among the experiments"),
-        ({'real_time_factor': 2}, 'parameter real_time_factor: expected a number with a dot'),
-        ({'expriment': 'small_angle'}, "'expriment' is not known here; did you mean 'experiment'"),
-    ],
-    'recorder': [
-        ({'topics': ['input', 'outputs']}, "parameter topics: 'outputs' is not one of"),
-        ({'output': 3}, 'parameter output: expected text, got 3'),
-        ({'windows': [f'{"x" * 300}=3']}, 'topic length should not exceed'),
-    ],
-    'identifier': [
-        ({'method': 'simplex'}, "'simplex' is not one of all, pso, cs, pso_cs, ls, vp"),
-        ({'seed': 1.5}, 'parameter seed: expected a whole number from 0 to'),
-        ({'lambda': 2.0}, 'lambda'),
-        ({'pole_bounds': [2.0, 1.0]}, 'pole_bounds: the lower bound must be below the upper'),
-    ],
-    'diagnoser': [
-        ({'vehicle': 'hummingbrd'}, "'hummingbrd' is not among the vehicles"),
-        ({'effects': ['wnd']}, "parameter effects: 'wnd' is not one of"),
-        ({'window': 3}, 'parameter window: expected a number with a dot'),
-    ],
+    'simulator': ({'expriment': 'small_angle'},
+                  "'expriment' is not known here; did you mean 'experiment'"),
+    'recorder': ({'windows': [f'{"x" * 300}=3']}, 'topic length should not exceed'),
+    'identifier': ({'seed': 1.5}, 'parameter seed: expected a whole number from 0 to'),
+    'diagnoser': ({'window': 3}, 'parameter window: expected a number with a dot'),
 }
 
 
@@ -59,19 +43,23 @@ def check_refusal(process, node, said):
 
 def test_bad_parameters_are_refused_in_one_line(processes):
     cases = [(processes.start(node, parameters), node, said)
-             for node, refused in REFUSED.items() for parameters, said in refused]
+             for node, (parameters, said) in REFUSED.items()]
     for case in cases:
         check_refusal(*case)
 
 
-@pytest.mark.parametrize('words, said', [
+WORDS = [
     (['--method', 'ls'], "'--method' is not an option here: parameters are given as --ros-args"),
     (['--ros-args', '-p', 'method'], 'the ROS arguments cannot be used'),
     (['--ros-args', '--params-file', '/nowhere.yaml'], '/nowhere.yaml: there is no such file'),
     (['--ros-args', '--params-file', '/proc/self/environ'], '/proc/self/environ: the file is '),
-])
-def test_bad_words_are_refused_in_one_line(processes, words, said):
-    check_refusal(processes.run('identifier', *words), 'identifier', said)
+]
+
+
+def test_bad_words_are_refused_in_one_line(processes):
+    cases = [(processes.run('identifier', *words), 'identifier', said) for words, said in WORDS]
+    for case in cases:
+        check_refusal(*case)
 
 
 def test_a_parameter_file_for_others_is_refused(processes, tmp_path):
@@ -82,41 +70,37 @@ def test_a_parameter_file_for_others_is_refused(processes, tmp_path):
                                          'it is for /identifer')
 
 
-@pytest.mark.parametrize('key', ['/quad/identifier', '/**/identifier'])
-def test_a_parameter_file_is_used(graph, processes, tmp_path, key):
-    path = tmp_path / 'parameters.yaml'
-    path.write_text(yaml.safe_dump({key: {'ros__parameters': {
-        'method': 'pso', 'seed': 4, 'pole_bounds': [-1.0, 12.0]}}}))
-    json = graph.listen(String, '/quad/parameters_json', latched())
-    process = processes.start('identifier', arguments=['--params-file', str(path),
-                                                       '-r', '__ns:=/quad'])
-    publisher = graph.advertise(Float64MultiArray, '/quad/record', latched(16))
-    for record in flights():
-        publisher.publish(record_message(record))
-    graph.spin_until(lambda: json, 'the result')
-    settings = json.data()[0]['settings']
-    assert (settings['methods'], settings['seed']) == (['pso'], 4)
-    assert settings['bounds']['psi']['poles'] == [-1.0, 12.0]
-    assert process.stop() == 0
+def test_a_parameter_file_is_used(graph, processes, tmp_path):
+    """By the name of the node in its namespace, and by one with a wildcard."""
+    heard, started = [], []
+    for space, key in (('quad', '/quad/identifier'), ('other', '/**/identifier')):
+        path = tmp_path / f'{space}.yaml'
+        path.write_text(yaml.safe_dump({key: {'ros__parameters': {
+            'method': 'pso', 'seed': 4, 'pole_bounds': [-1.0, 12.0]}}}))
+        heard.append(graph.listen(String, f'/{space}/parameters_json', latched()))
+        started.append(processes.start('identifier', arguments=[
+            '--params-file', str(path), '-r', f'__ns:=/{space}']))
+    for space in ('quad', 'other'):
+        publisher = graph.advertise(Float64MultiArray, f'/{space}/record', latched(16))
+        for record in flights():
+            publisher.publish(record_message(record))
+    graph.spin_until(lambda: all(heard), 'the results')
+    for json in heard:
+        settings = json.data()[0]['settings']
+        assert (settings['methods'], settings['seed']) == (['pso'], 4)
+        assert settings['bounds']['psi']['poles'] == [-1.0, 12.0]
+    assert [process.stop() for process in started] == [0, 0]
 
 
-def test_the_parameter_file_that_ships_fits_the_nodes(graph, processes):
-    path = os.path.join(os.path.dirname(__file__), '../../config/parameters.yaml')
-    started = [processes.start(node, arguments=['--params-file', path]) for node in NODES]
-    await_nodes(graph, NODES)
-    assert {process.stop() for process in started} == {0}
-
-
-@pytest.mark.parametrize('node, option', [('simulator', '--help'), ('recorder', '-h'),
-                                          ('identifier', '--help'), ('diagnoser', '-h')])
-def test_help_names_every_parameter(processes, node, option):
-    process = processes.run(node, option)
-    assert process.wait() == 0
-    assert process.errors() == ''
-    text = process.output()
-    assert text.startswith(f'{node}: ') and f'ros2 run quad_ident_ros {node}' in text
-    for spec in NODES[node].SPECS:
-        assert f'\n  {spec.name} (default ' in text and spec.description in text
+def test_help_names_every_parameter(processes):
+    options = {'simulator': '--help', 'recorder': '-h', 'identifier': '--help', 'diagnoser': '-h'}
+    for process in [processes.run(node, option) for node, option in options.items()]:
+        assert process.wait() == 0
+        assert process.errors() == ''
+        text, node = process.output(), process.node
+        assert text.startswith(f'{node}: ') and f'ros2 run quad_ident_ros {node}' in text
+        for spec in NODES[node].SPECS:
+            assert f'\n  {spec.name} (default ' in text and spec.description in text
 
 
 def await_nodes(graph, names):
@@ -134,8 +118,7 @@ def check_end(started, number):
     assert time.monotonic() - sent < 10.0
 
 
-@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM, signal.SIGINT,
-                                    signal.SIGTERM, signal.SIGINT])
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
 def test_signals_end_the_nodes_soon_and_well(graph, processes, tmp_path, number):
     """While they are at it: a flight, its recording, and a fit that does not end."""
     path = write_experiment(tmp_path / 'yaw.yaml', {'psi': (60.0, {'U4': 0.01})})
@@ -154,12 +137,15 @@ def test_signals_end_the_nodes_soon_and_well(graph, processes, tmp_path, number)
 
 
 def test_each_node_says_once_when_it_is_ready(graph, processes):
+    """With the parameter file that ships, which fits all of them."""
     said = {'simulator': 'ready: flies small_angle on ~/start',
             'recorder': 'ready: joins attitude, altitude, pose, twist, input; in memory only',
             'identifier': 'ready: fitting what comes on /record, mode once',
             'diagnoser': 'ready: diagnosing what comes on /record, mode once'}
-    given = {'simulator': {'experiment': 'small_angle', 'autostart': False}}
-    started = [processes.start(node, given.get(node)) for node in said]
+    given = {'simulator': ['-p', 'experiment:=small_angle', '-p', 'autostart:=false']}
+    path = os.path.join(os.path.dirname(__file__), '../../config/parameters.yaml')
+    started = [processes.start(node, arguments=['--params-file', path, *given.get(node, [])])
+               for node in said]
     for process, text in zip(started, said.values(), strict=True):
         graph.spin_until(lambda p=process: 'ready' in p.errors() or not p.running(),
                          f'{process.node} to be ready', 4 * DEADLINE)
@@ -200,7 +186,7 @@ def test_a_killed_simulator_starts_again(graph, processes, tmp_path):
     first = processes.start('simulator', {'experiment': endless})
     graph.spin_until(lambda: statistics and statistics.data()[-1]['joined'] >= 50, 'a flight')
     first.kill()
-    processes.start('simulator', {'experiment': path})
+    processes.start('simulator', {'experiment': path, 'real_time_factor': 0.0})
     graph.spin_until(lambda: json and len(records) == 3, 'records and result', 2 * DEADLINE)
     cut, *whole = records.records()
     assert 50 <= len(cut) and cut.info['dropped'] == 60001 - len(cut)

@@ -67,7 +67,8 @@ def test_identifier_and_diagnoser_work_side_by_side(graph):
     found = graph.listen(String, 'parameters_json', latched())
     verdicts = graph.listen(String, 'diagnosis', latched())
     graph.start(Identifier, {'mode': 'continuous', 'method': 'vp'})
-    graph.start(Diagnoser, {'mode': 'continuous', 'vehicle': 'hummingbird'},
+    graph.start(Diagnoser, {'mode': 'continuous', 'vehicle': 'hummingbird',
+                            'effects': ['rotor_drag', 'wind']},
                 arguments=['-r', 'record:=record_long'])
     graph.start(Recorder, {'window_seconds': 2.0, 'overlap': 0.5,
                            'windows': ['record_long=7.5']})

@@ -40,6 +40,7 @@ def test_an_exact_record_of_one_axis_is_diagnosed_as_the_nominal_vehicle(tmp_pat
     assert capsys.readouterr().out.startswith('verdict: none')
 
 
+@pytest.mark.slow
 def test_help_of_every_command_names_it(capsys):
     assert main([]) == 0
     assert 'identify' in capsys.readouterr().out
@@ -58,6 +59,7 @@ def test_a_node_that_is_taken_for_a_command_is_told_how_to_start(capsys):
     assert 'did you mean: node simulator' in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_simulate_writes_what_the_library_flies(flights):
     experiment = load_experiment('small_angle')
     for run in experiment.runs:
@@ -91,6 +93,7 @@ def test_json_on_standard_output_is_all_there_is(flights, capsys):
     assert data['methods']['ls']['outputs']['z']['K'] == pytest.approx(1 / 0.65, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_the_table_shows_all_methods_and_units(flights, capsys):
     assert main(['identify', str(flights['z']), '--trim', 'hover', '--initial-state',
                  'rest']) == 0
@@ -99,6 +102,7 @@ def test_the_table_shows_all_methods_and_units(flights, capsys):
         assert text in shown
 
 
+@pytest.mark.slow
 def test_inputs_come_from_rotor_commands_with_the_vehicle_named(flights, tmp_path, capsys):
     record = read_csv(flights['z'])
     vehicle = load_vehicle('paper_quadrotor')

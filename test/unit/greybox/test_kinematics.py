@@ -71,6 +71,7 @@ def test_white_noise_is_told_as_it_is_whatever_moves_the_vehicle():
     np.testing.assert_allclose(found, TRUE, rtol=0.05)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('memory', [0.05, 0.1, 0.3])
 def test_noise_with_a_memory_is_told_whole(memory):
     """Half of the power hangs together: from sample to sample it does not show."""
@@ -83,6 +84,7 @@ def test_noise_with_a_memory_is_told_whole(memory):
     assert 0.8 < attitude < 1.2
 
 
+@pytest.mark.slow
 def test_an_error_of_the_velocity_that_stays_over_a_prediction_is_a_drift():
     white = [noise(np.random.default_rng(seed), None) for seed in range(5)]
     slow = [error.copy() for error in white]

@@ -28,7 +28,8 @@ from quad_ident_ros.model.dynamics import STATES
 from quad_ident_ros.model.residual_function import ResidualFunction
 from quad_ident_ros.model.vehicle import load_vehicle
 
-pytestmark = pytest.mark.slow
+# One diagnosis for all tests.
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group('nuisances')]
 EXPERIMENT = load_experiment('closed_loop')
 VEHICLE = EXPERIMENT.vehicle
 DRAG = {'rotor_drag': {'coefficient': 0.25}}
@@ -44,6 +45,12 @@ def flown(effects):
 @pytest.fixture(scope='module')
 def dragged():
     return flown(DRAG)
+
+
+@pytest.fixture(scope='module')
+def clean(dragged):
+    """Return the data of their diagnosis as they are."""
+    return diagnose(dragged, VEHICLE).as_data()
 
 
 def shifted(record, samples):
@@ -121,8 +128,8 @@ def test_clocks_that_differ_from_flight_to_flight_are_no_delay(open_loop):
 
 @pytest.mark.xfail(strict=True, reason='noise of the recorded attitude, which guides the '
                    'translation, is taken for biases of it below 2 mrad')
-def test_flights_without_anything_of_their_own_are_told_so(dragged):
-    assert diagnose(dragged, VEHICLE).as_data()['nuisances'] is None
+def test_flights_without_anything_of_their_own_are_told_so(clean):
+    assert clean['nuisances'] is None
 
 
 @pytest.mark.parametrize('count', [1, 2])
@@ -299,10 +306,10 @@ def spoilt(record, rng):
     return changed(record, **dict(zip(('qw', 'qx', 'qy', 'qz'), q.T, strict=True))), off
 
 
-def test_single_attitudes_that_are_off_do_not_alter_the_verdict(dragged):
+def test_single_attitudes_that_are_off_do_not_alter_the_verdict(dragged, clean):
     random = np.random.default_rng(1)
     flights = [spoilt(record, random)[0] for record in dragged]
-    data, clean = (diagnose(each, VEHICLE).as_data() for each in (flights, dragged))
+    data = diagnose(flights, VEHICLE).as_data()
     assert data['verdict'] == clean['verdict'] == ['rotor_drag']
     (value, std), (other, _) = (parameters(each, 'rotor_drag')['coefficient']
                                 for each in (data, clean))
@@ -325,10 +332,9 @@ def spiked(record, random):
     return changed(record, **columns)
 
 
-def test_single_samples_that_are_off_do_not_alter_the_verdict(dragged):
+def test_single_samples_that_are_off_do_not_alter_the_verdict(dragged, clean):
     random = np.random.default_rng(4)
-    data, clean = (diagnose(each, VEHICLE).as_data()
-                   for each in ([spiked(record, random) for record in dragged], dragged))
+    data = diagnose([spiked(record, random) for record in dragged], VEHICLE).as_data()
     assert data['verdict'] == clean['verdict'] == ['rotor_drag']
     for name in SPIKES:
         assert data['gap']['after'][name] == pytest.approx(clean['gap']['after'][name], rel=0.2)

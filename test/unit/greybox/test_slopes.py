@@ -67,6 +67,7 @@ def test_slopes_from_elsewhere_lead_to_the_same_fit(slopes, flight):
     assert kept.cost == pytest.approx(fresh.cost, abs=1.0)
 
 
+@pytest.mark.slow
 def test_some_of_the_columns_are_what_they_are_in_all(slopes, flight):
     [some], z = slopes.of(COLUMNS[1:2]), nominal(VEHICLE)
     alone = slopes_at([flight], VEHICLE, z, [z], [flight.states[flight.first]],

@@ -3,6 +3,7 @@
 """Errors that a slow force and moment make count less in a fit."""
 
 import numpy as np
+import pytest
 
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.greybox.estimate import estimate
@@ -31,6 +32,7 @@ def test_whitened_errors_have_unit_covariance():
     np.testing.assert_allclose(white.slow_part(errors), expected, atol=1e-9)
 
 
+@pytest.mark.slow
 def test_a_moment_that_wanders_does_not_bias_the_inertia():
     # A controller answers the moment, so that commands and what disturbs them go together.
     moment = {'rotor_fault': {'loss_1': 0.08}}

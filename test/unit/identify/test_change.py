@@ -201,6 +201,7 @@ def test_without_an_attitude_the_tilt_is_not_known():
     assert identify([bare], FREE).validity['z'].holds is None
 
 
+@pytest.mark.slow
 def test_nothing_is_told_from_inputs_that_the_rotors_cannot_give():
     """For a second 3 N more are asked for than act: without limits, that is a heavier vehicle."""
     flight = climb(0.0, seed=2)

@@ -75,6 +75,7 @@ def test_least_squares_is_exact_where_the_vehicle_is_of_the_model_s_class():
     assert model.b == pytest.approx(0.0, abs=1e-8)
 
 
+@pytest.mark.slow
 def test_small_angle_gains_are_the_physical_ones():
     # For T << tau the fitted gain is l / I: 0.1 % over 5 s at 1e-3 N.
     outputs = identified('small_angle').methods['ls'].outputs
@@ -96,6 +97,7 @@ def test_the_paper_s_unit_steps_fit_yaw_and_altitude_and_nothing_else():
 
 # The literal variants.
 
+@pytest.mark.slow
 @pytest.mark.parametrize(('method', 'median'), [('pso', 9.0), ('cs', 18.0), ('pso_cs', 5.0)])
 def test_joint_search_of_12_dimensions_works(method, median):
     # Medians over 10 seeds and four outputs, as measured: PSO 3 to 6 %, CS 8 to 12 %, PSO-CS 1.4
@@ -138,6 +140,7 @@ def test_the_literal_box_is_0_to_200(method, search):
 
 # Records, results, data.
 
+@pytest.mark.slow
 def test_the_outputs_of_several_records_make_one_result():
     result = identified('hover_single_axis')
     for method in result.methods.values():
@@ -298,6 +301,7 @@ def test_cancelling_ends_the_identification():
 number = st.floats(-1e6, 1e6) | st.sampled_from([0.0, 1e-300, 1e49, -1e49])
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=80)
 @given(st.integers(8, 40).flatmap(lambda n: st.tuples(
     arrays.arrays(float, n, elements=number), arrays.arrays(float, n, elements=number),

@@ -61,6 +61,7 @@ gain = st.floats(0.1, 1e3) | st.floats(-1e3, -0.1)
 pole = st.just(0.0) | st.floats(-1.6, 30.0)
 
 
+@pytest.mark.slow
 @FAST
 @given(gain, pole, pole, st.sampled_from(sorted(INPUTS)))
 def test_clean_data_of_the_class_are_fitted_exactly(k, first, second, inputs):
@@ -85,6 +86,7 @@ def test_equal_poles_are_found_as_equal(value, inputs):
     assert found.model.a == pytest.approx(value, rel=1e-6, abs=1e-6)
 
 
+@pytest.mark.slow
 @FAST
 @given(gain, st.floats(-0.5, 5.0), st.floats(0.5, 30.0), st.sampled_from(sorted(INPUTS)))
 def test_complex_pairs_are_fitted_exactly(k, mean, turn, inputs):

@@ -87,6 +87,7 @@ def test_known_truths_are_found_over_20_seeds(system, inputs, poles, method):
     assert np.median(missed) < median and max(missed) < worst
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('method', ['cs', 'pso_cs'])
 def test_complex_pairs_are_found_by_default_where_they_are_clearly_better(method):
     # PSO may settle on the best real poles, 16 % off: with `auto` a pair's cost counts fourfold,
@@ -113,6 +114,7 @@ def test_noise_of_1_percent_is_fitted_to_its_size(system, method):
     assert 0.85 < min(rms) and max(rms) < limit
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('method', SWARMS)
 def test_more_budget_is_not_worse(method):
     flight = record(SYSTEMS['stable'], INPUTS['prbs'])

@@ -70,6 +70,7 @@ values = st.floats(-1e3, 1e3)
 steps = st.floats(1e-3, 10.0)
 
 
+@pytest.mark.slow
 @FAST
 @given(st.integers(2, 40).flatmap(lambda n: st.tuples(
     arrays.arrays(float, n, elements=values), arrays.arrays(float, n, elements=values),
@@ -90,6 +91,7 @@ def test_inequalities_of_the_errata(drawn):
     assert all(e[key] >= 0 for key in ('iae', 'ise', 'itae', 'itse'))
 
 
+@pytest.mark.slow
 @FAST
 @given(arrays.arrays(float, 20, elements=values), arrays.arrays(float, 20, elements=values),
        st.floats(0.01, 100))

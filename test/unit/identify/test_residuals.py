@@ -37,6 +37,7 @@ def test_white_residuals_pass_as_often_as_they_should():
     assert sum(tests.is_coloured or tests.depends_on_input for tests in found) <= 12
 
 
+@pytest.mark.slow
 def test_coloured_residuals_are_found_and_are_no_trace_of_the_input():
     found = [examine(SIGNAL, coloured(seed)) for seed in range(DRAWS)]
     assert all(tests.is_coloured for tests in found)
@@ -49,6 +50,7 @@ def test_a_trace_of_the_input_is_found():
         assert examine(SIGNAL, residual).depends_on_input
 
 
+@pytest.mark.slow
 def test_noise_models_are_the_noise_s():
     there = np.ones(501, bool)
     models = [noise_model(coloured(seed), there) for seed in range(DRAWS)]

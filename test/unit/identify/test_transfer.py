@@ -59,6 +59,7 @@ def oracle(c1, c0, t):
 
 # Zero-order hold.
 
+@pytest.mark.slow
 @FAST
 @given(models())
 def test_zoh_is_the_matrix_exponential(drawn):
@@ -84,6 +85,7 @@ def test_zoh_of_textbook_cases(c1, c0, t, expected):
     assert np.allclose(zoh(c1, c0, t), expected, rtol=1e-14, atol=1e-16)
 
 
+@pytest.mark.slow
 @FAST
 @given(models(), st.integers(2, 6))
 def test_zoh_over_many_samples_is_zoh_of_the_whole(drawn, count):
@@ -99,6 +101,7 @@ def test_zoh_over_many_samples_is_zoh_of_the_whole(drawn, count):
 
 # Round trip.
 
+@pytest.mark.slow
 @FAST
 @given(models())
 @example((0.01, SecondOrder.from_poles(1.0, 0.0, 0.0)))
@@ -128,6 +131,7 @@ def test_a_pole_that_is_gone_within_a_sample_comes_back_too(fast, slow):
     assert found.gain == pytest.approx(3.0, rel=1e-9)
 
 
+@pytest.mark.slow
 @FAST
 @given(models())
 def test_round_trip_keeps_the_form_and_the_order(drawn):
@@ -187,6 +191,7 @@ def errata_coefficients(k, a, b, t):
     return pa * pb, -(pa + pb), k * hold(a) * hold(b) - b1, b1
 
 
+@pytest.mark.slow
 @FAST
 @given(gain, st.just(0.0) | st.floats(0.01, 4) | st.floats(-4, -0.01), st.floats(0.05, 4),
        period)
@@ -209,6 +214,7 @@ def test_coefficients_of_the_double_integrator():
     assert (found.b0, found.b1) == pytest.approx((0.06, 0.06), rel=1e-14)
 
 
+@pytest.mark.slow
 @FAST
 @given(models())
 def test_the_recurring_equation_31_gives_the_response(drawn):
@@ -231,6 +237,7 @@ def test_printed_36_to_37_does_not_round_trip():
     assert b == pytest.approx(-4.07 - 31.4j, abs=0.05)
 
 
+@pytest.mark.slow
 @FAST
 @given(st.floats(0.5, 100), st.floats(0.05, 5), st.floats(0.1, 3), st.floats(0.01, 0.3))
 def test_printed_36_to_37_never_gives_the_model_back(k, b, apart, t):
@@ -303,6 +310,7 @@ def test_response_holds_the_input_and_does_not_interpolate_it():
     assert (response(model, np.array([1.0, 0.0, 5.0, -3.0]), 0.1) == found).all()
 
 
+@pytest.mark.slow
 @FAST
 @given(models(), st.floats(-3, 3), st.floats(-3, 3), st.integers(0, 1000))
 def test_superposition(drawn, first, second, seed):

@@ -193,6 +193,7 @@ def test_equal_poles_have_correlations_of_their_sum_and_product():
     assert said.names == ('K', 'c1', 'c0') and said.unidentifiable == ('a', 'b')
 
 
+@pytest.mark.slow
 def test_a_disturbance_is_estimated_without_bias():
     truth, found = SYSTEMS['real'], []
     for seed in range(100):

@@ -211,6 +211,7 @@ def coloured(u, seed):
     return replace(clean, y=clean.y + 0.01 * np.ptp(clean.y) * noise[200:])
 
 
+@pytest.mark.slow
 def test_errors_under_coloured_noise_are_the_scatter():
     truth, u = SYSTEMS['stable'], excitation('prbs')
     found, said, plain = [], [], []

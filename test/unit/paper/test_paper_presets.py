@@ -99,6 +99,7 @@ def test_printed_equations_end_at_the_exact_time(printed_cases):
     assert {round(case.expected, 4) for case in exact} == {0.0810, 0.8101, 0.2562, 1.0411}
 
 
+@pytest.mark.slow
 def test_printed_equations_end_where_an_adaptive_integrator_ends(printed_cases):
     known = [case for case in printed_cases if case.source == 'adaptive integrator']
     assert len(known) == 2

@@ -73,6 +73,7 @@ def test_what_is_taken_over_from_the_generations_is_what_the_budget_gives(table_
         assert table_3_study.fits['per_output_equal'][name][1].cost == fit.cost
 
 
+@pytest.mark.slow
 def test_the_same_seeds_give_the_same_costs(table_3_study):
     progress = []
     again = study(load_preset('paper_table3').records, SEEDS, lambda: progress.append(1))

@@ -34,6 +34,7 @@ def test_words_tell_where_the_error_is_largest(path):
                                '1.00 m; after: 0.01 m/s at 0 s, x, y, z 1.00, 0.00, 0.00 m.')
 
 
+@pytest.mark.slow
 def test_the_path_is_orange_and_thick_where_the_error_is_large(path, tmp_path):
     lines = drawn(path, tmp_path)
     *before, (after, _, thin) = lines       # the error after is the same all along
@@ -46,6 +47,7 @@ def test_the_path_is_orange_and_thick_where_the_error_is_large(path, tmp_path):
                for one, other in zip(before[:-1], before[1:], strict=True))
 
 
+@pytest.mark.slow
 def test_nothing_is_drawn_where_nothing_is_known(path, tmp_path):
     """A single flight, of which blocks are held out."""
     known = np.r_[0:30, 60:101]
@@ -55,6 +57,7 @@ def test_nothing_is_drawn_where_nothing_is_known(path, tmp_path):
     assert sum(len(points) - 1 for points, *_ in lines) == 2 * (29 + 40)
 
 
+@pytest.mark.slow
 def test_a_vehicle_that_hovers_without_an_error_has_a_path(path, tmp_path):
     save_path(FlightPath(path.t, np.ones((101, 3)), {'before': np.zeros(101),
                                                      'after': np.zeros(101)}),

@@ -126,6 +126,7 @@ def test_bad_input_gets_one_line_before_any_work(arguments, tmp_path, capsys):
     assert list(tmp_path.iterdir()) == [file]
 
 
+@pytest.mark.slow
 def test_failures_and_exact_fits_have_a_place_in_the_picture(tmp_path):
     path = tmp_path / 'spread.png'
     save_spread({'some': {'pso': np.array([1.0, np.inf, 0.0]), 'ls': np.array([0.0])},

@@ -42,6 +42,7 @@ def test_a_measured_line_does_not_fill_what_lies_between_its_turns(drawn, turns)
     assert line.get_linewidth() == 5 or turns > 1
 
 
+@pytest.mark.slow
 def test_the_legend_lies_beside_the_panels(drawn):
     figure = drawn(T)
     figure.canvas.draw()
@@ -51,6 +52,7 @@ def test_the_legend_lies_beside_the_panels(drawn):
     assert [text.get_text() for text in figure.legends[0].get_texts()] == ['measured', 'VP']
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('title', ['$x_{$: a file', r'\frac{ $\frac{$', '$^^$'])
 def test_titles_with_mathematics_are_drawn_as_they_are(tmp_path, title):
     """Names of files and experiments have any text; matplotlib fails on such between two $."""

@@ -19,6 +19,7 @@ from quad_ident_ros.model.vehicle import load_vehicle, write_vehicle
 from quad_ident_ros.report.diagnosis import show
 from quad_ident_ros.user_simulator.simulator import Simulator
 
+pytestmark = pytest.mark.xdist_group('diagnosis_in_a_simulator')     # one for all tests
 FILE = Path(__file__).parents[2] / 'helpers' / 'plain_simulators.py'
 BARE = load_vehicle('hummingbird')
 TRUTH = {'rotor_drag': {'coefficient': 0.3}, 'motor_lag': {'time_constant': 0.03}}

@@ -9,7 +9,7 @@ from flying import usual
 import numpy as np
 import pytest
 
-from quad_ident_ros.diagnose.gap import ends, gap
+from quad_ident_ros.diagnose.gap import by_model, ends, gap
 from quad_ident_ros.diagnose.residual_wrench import residual_wrench
 from quad_ident_ros.effects.registry import EFFECTS, vector
 from quad_ident_ros.errors import InputError
@@ -42,9 +42,9 @@ def track(record):
 
 
 @pytest.fixture(scope='module')
-def short(record):
+def brief(record):
     """Return what a simulator that steps one vehicle at a time follows in a few seconds."""
-    part = record.slice(200, 450)      # rows of 10 ms
+    part = record.slice(200, 325)      # rows of 10 ms
     return track_of(part, BARE, highest_voltage([record]))
 
 
@@ -62,13 +62,19 @@ def apart(track, vehicle, z, flown):
     return gap([replace(theirs, errors=theirs.errors - ours.errors)]), gap([ours])
 
 
+def change_by(track, vehicle, z):
+    """Return {group: root mean square} of what effects change in our model."""
+    return apart(track, vehicle, nominal(vehicle), lambda *args: by_model(
+        args[0], vehicle, z, *args[3:]))[0]
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize('name, vehicle', [
     ('Many', BARE), ('ManyLagged', LAGGED), ('One', BARE), ('OneLagged', LAGGED),
     ('OnePushed', BARE), ('ManyPushed', BARE)])
-def test_a_simulator_of_the_nominal_vehicle_has_the_gap_of_our_model(short, name, vehicle):
+def test_a_simulator_of_the_nominal_vehicle_has_the_gap_of_our_model(brief, name, vehicle):
     with simulator(name, vehicle) as flown:
-        off, ours = apart(short, vehicle, nominal(vehicle), flown)
+        off, ours = apart(brief, vehicle, nominal(vehicle), flown)
     for group, value in off.items():
         assert value < 1e-3 * ours[group]
 
@@ -85,8 +91,7 @@ def test_each_effect_around_a_simulator_does_what_it_does_in_our_model(track, ef
     z = with_effects(BARE, effects)
     with simulator(name) as flown:
         off, _ = apart(track, BARE, z, flown)
-        change = apart(track, BARE, nominal(BARE), lambda *args: flown(
-            args[0], BARE, z, *args[3:]))[0]
+    change = change_by(track, BARE, z)
     # Held over a step of 10 ms that turns by 0.02 rad, a force is right to some percent.
     for group, value in off.items():
         assert value < max(0.02 * change[group], 2e-5)
@@ -99,17 +104,17 @@ def test_each_effect_around_a_simulator_does_what_it_does_in_our_model(track, ef
     ({'rise': 0.02, 'fall': 0.05}, 'ManyLagged'), ({'time_constant': 0.02}, 'ManyLagged'),
     ({'slew': 1e-5, 'time_constant': 0.04}, 'ManyLagged'), ({}, 'ManyLagged'),
     ({'mean_lag': 0.03, 'inner_lag': 0.02}, 'ManyLagged')])
-def test_motors_of_another_law_take_the_place_of_the_simulator_s(short, motors, name):
+def test_motors_of_another_law_take_the_place_of_the_simulator_s(brief, motors, name):
     effects = {'motor_lag': motors, 'rotor_drag': {'coefficient': 0.2}}
     z = with_effects(LAGGED, effects)
     with simulator(name, LAGGED) as flown:
-        off, _ = apart(short, LAGGED, z, flown)
-        change = apart(short, LAGGED, nominal(LAGGED), lambda *args: flown(
-            args[0], LAGGED, z, *args[3:]))[0]
+        off, _ = apart(brief, LAGGED, z, flown)
+    change = change_by(brief, LAGGED, z)
     for group, value in off.items():
         assert value < 0.02 * change[group]
 
 
+@pytest.mark.slow
 def test_with_the_true_effects_around_it_noise_alone_is_left(track):
     truth = with_effects(BARE, REALITY)
     with simulator('ManyPushed') as flown:
@@ -121,6 +126,7 @@ def test_with_the_true_effects_around_it_noise_alone_is_left(track):
     assert after['velocity'] < 0.2 * before['velocity']
 
 
+@pytest.mark.slow
 def test_where_the_gap_lies_is_told_as_of_our_model(track):
     noise = np.repeat([1e-3, 1e-2, 2e-3, 1e-2], 3)
     ours = residual_wrench(track, BARE, nominal(BARE), noise)
@@ -130,6 +136,7 @@ def test_where_the_gap_lies_is_told_as_of_our_model(track):
     assert (theirs.t == ours.t).all()
 
 
+@pytest.mark.slow
 def test_slow_records_are_flown_in_finer_steps():
     record = fly_closed_loop(BARE, REALITY, 'lissajous', duration=6.0, rate=50.0, seed=2)
     slow, z = track_of(record, BARE), with_effects(BARE, REALITY)
@@ -141,13 +148,13 @@ def test_slow_records_are_flown_in_finer_steps():
 
 
 @pytest.mark.slow
-def test_several_processes_fly_what_one_does(short, monkeypatch):
+def test_several_processes_fly_what_one_does(brief, monkeypatch):
     with simulator('One') as flown:
-        alone = ends(short, BARE, with_effects(BARE, REALITY), 0.1, flown)
+        alone = ends(brief, BARE, with_effects(BARE, REALITY), 0.1, flown)
     monkeypatch.setattr(processes, 'WORTH', 0.0)
     monkeypatch.setattr(processes.os, 'sched_getaffinity', lambda _: {0, 1})
     with simulator('One') as flown:
-        together = ends(short, BARE, with_effects(BARE, REALITY), 0.1, flown)
+        together = ends(brief, BARE, with_effects(BARE, REALITY), 0.1, flown)
     np.testing.assert_array_equal(together.errors, alone.errors)
 
 

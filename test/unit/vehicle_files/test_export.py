@@ -377,6 +377,7 @@ def test_shapes_of_mujoco_get_an_inertial_beside_them():
     assert read.mass == 1.5 and read.inertia == pytest.approx(vehicle.inertia, rel=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('to', TARGETS)
 def test_every_form_of_every_effect_ends_in_one_class(to):
     source, vehicle = base(to)

@@ -35,6 +35,7 @@ def exported(folder, to, out, *more):
     return json.loads(path.read_text())
 
 
+@pytest.mark.slow
 def test_a_file_with_all_effects_closes_all_of_the_gap(flown, capsys):
     data = exported(flown, 'rotorpy', 'real_params.py')
     gaps = data['gap']['gaps']
@@ -44,6 +45,7 @@ def test_a_file_with_all_effects_closes_all_of_the_gap(flown, capsys):
     assert 'the written file closes 100 % of what the vehicle file closes' in said
 
 
+@pytest.mark.slow
 def test_what_a_format_does_not_have_is_what_its_file_leaves(flown):
     shares = {to: exported(flown, to, out)['gap']['shares']['file']
               for to, out in (('gazebo', 'a.sdf'), ('mujoco', 'a.xml'))}
@@ -51,11 +53,13 @@ def test_what_a_format_does_not_have_is_what_its_file_leaves(flown):
     assert 0.3 < shares['mujoco'] < shares['gazebo'] < 0.999
 
 
+@pytest.mark.slow
 def test_code_beside_the_file_closes_what_its_numbers_leave(flown):
     shares = exported(flown, 'mujoco', 'b.xml')['gap']['shares']
     assert shares['file'] < 0.9 < 0.999 < shares['file_and_code'] <= 1.0 + 1e-9
 
 
+@pytest.mark.slow
 def test_the_base_is_the_nominal_vehicle(flown):
     nominal = flown / 'nominal_params.py'
     write_vehicle(flown / 'nominal.yaml', load_vehicle('hummingbird'))

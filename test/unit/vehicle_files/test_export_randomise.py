@@ -37,6 +37,7 @@ def known(names=NAMES, means=MEANS, shares=(0.05, 0.02, 0.02), correlation=0.99,
                    **more)
 
 
+@pytest.mark.slow
 def test_draws_have_the_covariance_that_is_stated():
     vehicle = known()
     draws = draw(vehicle, 500, seed=3)
@@ -50,6 +51,7 @@ def test_draws_have_the_covariance_that_is_stated():
     assert draws.cut == 0
 
 
+@pytest.mark.slow
 def test_a_draw_is_the_vehicle_with_its_numbers_and_says_nothing_of_how_well_they_are_known():
     vehicle = known(uncertainty={'mass': 0.01})
     draws = draw(vehicle, 5, seed=1)
@@ -62,6 +64,7 @@ def test_a_draw_is_the_vehicle_with_its_numbers_and_says_nothing_of_how_well_the
     assert not np.array_equal(draw(vehicle, 5, seed=2).values, draws.values)
 
 
+@pytest.mark.slow
 def test_draws_end_at_the_bounds_of_what_vehicles_have():
     # A lag is not negative: a normal distribution that is cut off at its mean less 0.5 deviations.
     vehicle = known(('motor_lag.time_constant', *NAMES[1:]), np.array([0.002, *MEANS[1:]]),
@@ -91,6 +94,7 @@ def test_what_cannot_be_a_vehicle_at_all_is_refused():
         draw(vehicle, 50)
 
 
+@pytest.mark.slow
 def test_constants_apart_from_the_covariance_are_drawn_by_their_own_deviation():
     places = {'rotors[0].position': (0.001, 0.001, None), 'speed_max': 10.0, 'mass': 0.3,
               'inertia': (1e-4, None, None)}

@@ -352,6 +352,7 @@ def test_files_of_ours_are_loaded_as_before(tmp_path):
         load_any_vehicle(picture)
 
 
+@pytest.mark.slow
 def test_entities_that_stand_for_gigabytes_are_refused_at_once(tmp_path):
     levels = ''.join(f'<!ENTITY a{k} "{f"&a{k - 1};" * 10}">' for k in range(1, 12))
     text = (f'<!DOCTYPE robot [<!ENTITY a0 "ha">{levels}<!ATTLIST robot name CDATA "&a11;">]>\n'

@@ -14,6 +14,7 @@ from quad_ident_ros.vehicle_files.export import export
 from quad_ident_ros.vehicle_files.load import load_any_vehicle, read_vehicle, source_of
 from quad_ident_ros.vehicle_files.source import Source
 
+pytestmark = pytest.mark.xdist_group('libsdformat')     # one program for all tests
 PROGRAM = r"""
 #include <iomanip>
 #include <iostream>
