@@ -9,6 +9,7 @@ from types import SimpleNamespace
 
 from fleets import series, START
 import numpy as np
+from published import diagnosis
 import pytest
 
 from quad_ident_ros.cli import fly
@@ -82,10 +83,9 @@ def test_what_fit_can_free(capsys):
 
 
 def test_warnings_of_a_diagnosis():
-    found = SimpleNamespace(
-        held_out='b.csv', gap=SimpleNamespace(closed=0.5), in_simulator=None,
-        findings=({'flight': 'all flights', 'code': 'at_bound', 'severity': 'warning',
-                   'where': 'inertia_mismatch', 'message': 'factor_x 5 is the bound'},))
+    found = diagnosis(findings=(
+        {'flight': 'all flights', 'code': 'at_bound', 'severity': 'warning',
+         'where': 'inertia_mismatch', 'message': 'factor_x 5 is the bound'},))
     assert caution_lines(found) == ['warning: all flights: error in inertia (inertia_mismatch): '
                                     'factor_x 5 is the bound']
 
