@@ -1,11 +1,13 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""What holds for all tests: the same examples in every run, and what needs ROS 2 where it is."""
+"""What holds for all tests: the same examples, what is quick, what needs ROS 2 where it is."""
 
+from collections import Counter
 from importlib.util import find_spec
 import re
 
 from hypothesis import settings
+import pytest
 
 settings.register_profile('same', derandomize=True)
 settings.register_profile('explore', print_blob=True)   # pytest --hypothesis-profile=explore
@@ -14,6 +16,20 @@ settings.load_profile('same')
 IMPORTS_ROS = re.compile(
     r'^(from|import) (rclpy|rcl_interfaces|\w+_msgs|quad_ident_ros\.nodes|benchmarks\.load)\b',
     re.MULTILINE)
+
+FEW = 3     # cases of a test that are quick: of more, as many that are spread over them
+OF_FILES = 'test_repository.py', 'test_imports.py'      # each case is a file that may be at fault
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items):
+    """Mark as slow what of a table of many cases ./run test --fast need not look at."""
+    tests = [item.nodeid.partition('[')[0] for item in items]
+    count, seen = Counter(tests), Counter()
+    for test, item in zip(tests, items, strict=True):
+        if seen[test] * FEW % count[test] >= FEW and item.path.name not in OF_FILES:
+            item.add_marker(pytest.mark.slow)
+        seen[test] += 1
 
 
 def pytest_ignore_collect(collection_path):

@@ -4,14 +4,18 @@
 
 from contextlib import contextmanager
 import resource
+import sys
 
 
 @contextmanager
 def file_size_limit(size):
     """Have writes past that size (bytes) fail, as on a full disk."""
+    # Python 3.11 keeps bytecode that is cut short, on which every later start ends.
+    keeps, sys.dont_write_bytecode = sys.dont_write_bytecode, True
     soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (size, hard))
     try:
         yield
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+        sys.dont_write_bytecode = keeps
