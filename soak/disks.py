@@ -119,6 +119,7 @@ def hook(name, values):
         elif what == 'full':
             fill()
         elif what == 'limit':
+            sys.dont_write_bytecode = True     # it would be cut short, and kept
             resource.setrlimit(resource.RLIMIT_FSIZE, (int(most), int(most)))
         else:
             subprocess.run(['mount', '-o', 'remount,ro', place], check=True)
@@ -257,5 +258,6 @@ def _quad_ident(words: str, folder: Path, most: int | None = None) -> subprocess
 
     # What is compiled has to be kept elsewhere: it would not fit either.
     return subprocess.run([sys.executable, '-m', 'quad_ident_ros', *words.split()], cwd=folder,
-                          env={**os.environ, 'PYTHONPATH': ROOT}, capture_output=True, text=True,
-                          preexec_fn=limit, check=False)
+                          env={**os.environ, 'PYTHONPATH': ROOT,
+                               'PYTHONDONTWRITEBYTECODE': '1'},
+                          capture_output=True, text=True, preexec_fn=limit, check=False)

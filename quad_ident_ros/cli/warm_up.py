@@ -18,7 +18,7 @@ def run(options):
     """Compile what is not compiled yet, and say when that is done."""
     began = time.monotonic()
     # Where there is no terminal there is no bar.
-    print('compiling the inner loops: some minutes after install, seconds later on', flush=True)
+    print('compiling the inner loops: minutes the first time, seconds later', flush=True)
     with progress_bar() as bar:
         task = bar.add_task('a small identification', total=1.0)
         warm_up()

@@ -35,7 +35,6 @@ from quad_ident_ros.report.verdict import (
     contribution_of,
     form_of,
     next_step,
-    predicts_worse,
     size_line,
     values_of,
     verdict_line,
@@ -288,7 +287,7 @@ def caution_lines(found: Diagnosis) -> list[str]:
              + (f' ({", ".join(one["flight"] for one in others)} alike)' if others else '')
              + f': {titled(first["where"])}: {first["message"]}'
              for first, *others in alike.values()]
-    return [*(farther if predicts_worse(found) else []), *_of_simulator(found), *lines]
+    return [*(farther if found.gap.closed < 0.0 else []), *_of_simulator(found), *lines]
 
 
 def _of_simulator(found: Diagnosis) -> list[str]:

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from quad_ident_ros.diagnose.result import (
+    BLOCKS,
     Diagnosis,
     Gap,
     GapGivenAttitude,
@@ -38,20 +39,23 @@ def verdict_line(found: Diagnosis) -> str:
     unknown = 'unknown' in found.verdict
     share = (f'{100 * max(found.gap.closed, 0.0):.0f} % of the velocity gap above the noise'
              if above_noise(found.gap) else 'part of the gap' if unknown else 'the gap')
-    if predicts_worse(found):
-        share = (f'the flights that were fitted, but not {found.held_out}, which the nominal '
-                 'vehicle predicts better')
-    elif unknown:
+    another = is_of_another(found)
+    if another:
+        share = f'{"part of the gap" if unknown else "the gap"} of the flights that were fitted'
+    if unknown:
         share += (', and the rest is unknown: another cause, or '
                   f'{"this effect" if len(named) == 1 else "one of these effects"} by a law that '
                   'is none of its forms')
     beside = doubts and f'; beside {"it" if len(named) == 1 else "them"}, {doubts}'
     gusts = _gusts_of(found) if unknown else ''
+    if another:
+        beside += (f'; the velocity of {found.held_out}, which was not used for fitting, is '
+                   f'predicted better without {"it" if len(named) == 1 else "them"}')
     if is_uncertain(found):
         best = '; '.join(f'{titled(row.effect)}{_law_of(found, row)}, {values_of(row)}, '
                          f'probability {row.probability:.2g}' for row in named)
         return (f'uncertain: the best known explanation of {share} is less likely than '
-                f'something else that acts alike: {best}{gusts}')
+                f'something else that acts alike: {best}{beside if another else ""}{gusts}')
     if len(named) == 1:
         row, = named
         return (f'{titled(row.effect)}{_law_of(found, row)}, {values_of(row)}, explains {share}'
@@ -100,10 +104,10 @@ def next_step(found: Diagnosis, written: str | None = None) -> str:
     if any(one['code'] == 'other_vehicle' for one in found.findings):
         return ('Next: check the vehicle file, which seems to be that of another vehicle, as the '
                 'warning "vehicle file" says, and diagnose again.')
-    if predicts_worse(found):
-        return (f'Next: see whether {found.held_out} was flown by the same vehicle as the others, '
-                'with the same payload, propellers and firmware, and diagnose together only what '
-                'was.')
+    if is_of_another(found):
+        return (f'Next: see whether {found.held_out} was flown with the same payload and '
+                'propellers as the flights that were fitted. If so, hold out another one '
+                '(--hold-out FLIGHT); if not, diagnose them apart.')
     if 'unknown' in found.verdict:
         rest = ('Next: the lines "unexplained" and "differs" say in which channel, regime and '
                 'flight the rest occurs.')
@@ -111,7 +115,7 @@ def next_step(found: Diagnosis, written: str | None = None) -> str:
         alone = [one.flight for one in found.flight_checks if one.differs] == [found.held_out]
         return (f'{rest} Only {found.held_out} differs, which was not used for fitting: if it '
                 'moves more than the others, hold out one of them instead (--hold-out FLIGHT); if '
-                'its payload or propellers were others, diagnose it alone.'
+                'its payload or propellers differ, diagnose it alone.'
                 if alone and len(found.flight_checks) > 2 else rest)
     if found.form_unknown:
         where = 'Next: the lines "unexplained" say where its law differs from the nearest one'
@@ -144,11 +148,23 @@ def is_uncertain(found: Diagnosis) -> bool:
     return bool(named) and all(row.probability < RULES.present for row in named)
 
 
-def predicts_worse(found: Diagnosis) -> bool:
-    """Whether effects are named without which the held-out flight is clearly predicted better."""
-    before, after = (part['velocity'] for part in (found.gap.before_interval,
-                                                   found.gap.after_interval))
-    return bool(_named(found)) and after[0] > before[1]
+def is_of_another(found: Diagnosis) -> bool:
+    """
+    Whether what is named is none of the held-out flight: its velocity is clearly better without.
+
+    Beyond chance and tolerance, where nothing else is better with it. Half of a single flight is
+    of the same vehicle.
+    """
+    gap, single = found.gap, any(one['code'] == BLOCKS for one in found.findings)
+    low, _ = gap.after_interval['velocity']
+    if single or not _named(found) or low <= gap.before_own['velocity']:
+        return False
+
+    def differ(name: str, less: dict, more: dict) -> bool:
+        return more[name] ** 2 - less[name] ** 2 > found.tolerance[name] ** 2
+
+    return differ('velocity', gap.before_own, gap.after) and not any(
+        differ(name, gap.after, gap.before_own) for name in found.tolerance)
 
 
 def above_noise(gap: Gap | GapGivenAttitude | GapInSimulator) -> bool:

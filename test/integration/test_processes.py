@@ -29,7 +29,7 @@ REFUSED = {
                   "'expriment' is not known here; did you mean 'experiment'"),
     'recorder': ({'windows': [f'{"x" * 300}=3']}, 'topic length should not exceed'),
     'identifier': ({'seed': 1.5}, 'parameter seed: expected a whole number from 0 to'),
-    'diagnoser': ({'window': 3}, 'parameter window: expected a number with a dot'),
+    'diagnoser': ({'vehicle': 'hummingbrd'}, "'hummingbrd' is not among the vehicles"),
 }
 
 

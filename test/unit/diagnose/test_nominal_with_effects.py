@@ -78,7 +78,7 @@ def test_a_file_with_half_the_drag_has_the_other_half_to_gain(flights, tmp_path)
         **TRUTH, 'rotor_drag': {'coefficient': drag.value}}
     # What was corrected has nothing more to gain.
     assert diagnose(flights, load_vehicle(tmp_path / 'v.yaml'),
-                    effects=['rotor_drag', 'body_drag']).verdict == ('none',)
+                    effects=['rotor_drag', 'body_drag', 'motor_lag']).verdict == ('none',)
 
 
 @pytest.mark.slow

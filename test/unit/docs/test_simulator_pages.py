@@ -2,11 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """The commands of docs/simulators, run as they stand on each page: from flights to the model."""
 
-from contextlib import redirect_stdout
+from contextlib import redirect_stdout, suppress
 import importlib.util
 import os
 from pathlib import Path
 import re
+import signal
 import subprocess
 import sys
 
@@ -49,7 +50,8 @@ def outcome_of(text, desk, run):
         shell = subprocess.Popen(
             ['bash', '-euo', 'pipefail', '-c', f'trap \'printf end >"{desk}/call"\' EXIT\n{text}'],
             stdout=printed, env=os.environ | {
-                'PATH': f'{Path.cwd()}{os.pathsep}{os.environ["PATH"]}', 'PYTHONPATH': path})
+                'PATH': f'{Path.cwd()}{os.pathsep}{os.environ["PATH"]}', 'PYTHONPATH': path},
+            start_new_session=True)
     try:
         while (words := (desk / 'call').read_text(encoding='utf-8')) != 'end':
             with open(desk / 'said', 'w', encoding='utf-8') as said, redirect_stdout(said):
@@ -57,7 +59,8 @@ def outcome_of(text, desk, run):
             (desk / 'code').write_text(f'{code}\n')
         return shell.wait(60), (desk / 'printed').read_text(encoding='utf-8')
     finally:
-        shell.kill()
+        with suppress(ProcessLookupError):      # what it started may wait for an answer
+            os.killpg(shell.pid, signal.SIGKILL)
         shell.wait()
 
 

@@ -27,7 +27,6 @@ from quad_ident_ros.model.vehicle import load_vehicle
 from quad_ident_ros.report import gap_page
 from quad_ident_ros.report.diagnosis import ALL, caution_lines, show, USUAL, VERDICT
 from quad_ident_ros.report.gap_pictures import _by_third, map_rows, regimes, save_map
-from quad_ident_ros.report.html import write_page
 from quad_ident_ros.report.received import diagnosis_from
 from quad_ident_ros.report.verdict import sentence
 
@@ -425,11 +424,12 @@ def test_none_and_unknown_have_their_colours(page, remaining):
     assert OPEN['verdict'] == ('rotor_drag', 'unknown') and 'tag no">unknown<' in remaining
 
 
-def test_a_place_that_cannot_be_written_is_said_in_one_line(tmp_path):
-    """What all pages are written by says it: the pictures of this one take seconds."""
+def test_a_place_that_cannot_be_written_is_said_in_one_line(found, tmp_path, monkeypatch):
+    """Without pictures, which take seconds."""
+    monkeypatch.setattr(gap_page, 'drawings', lambda *_: {})
     (tmp_path / 'file').write_text('')
     with pytest.raises(InputError, match='cannot be written'):
-        write_page(tmp_path / 'file' / 'page.html', 'title', 'body')
+        gap_page.write(tmp_path / 'file' / 'page.html', found)
 
 
 @pytest.fixture
