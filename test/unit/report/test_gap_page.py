@@ -426,7 +426,7 @@ def test_none_and_unknown_have_their_colours(page, remaining):
 
 def test_a_place_that_cannot_be_written_is_said_in_one_line(found, tmp_path, monkeypatch):
     """Without pictures, which take seconds."""
-    monkeypatch.setattr(gap_page, 'drawings', lambda *_: {})
+    monkeypatch.setattr(gap_page, 'drawings', lambda drawn, _: dict.fromkeys(drawn, ''))
     (tmp_path / 'file').write_text('')
     with pytest.raises(InputError, match='cannot be written'):
         gap_page.write(tmp_path / 'file' / 'page.html', found)
