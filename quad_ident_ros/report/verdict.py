@@ -39,30 +39,29 @@ def verdict_line(found: Diagnosis) -> str:
     unknown = 'unknown' in found.verdict
     share = (f'{100 * max(found.gap.closed, 0.0):.0f} % of the velocity gap above the noise'
              if above_noise(found.gap) else 'part of the gap' if unknown else 'the gap')
-    another = is_of_another(found)
-    if another:
+    contradiction = ''
+    if held_out_contradicts(found):
         share = f'{"part of the gap" if unknown else "the gap"} of the flights that were fitted'
+        contradiction = (f'; the velocity of {found.held_out}, which was not used for fitting, is '
+                         f'predicted better without {"it" if len(named) == 1 else "them"}')
     if unknown:
         share += (', and the rest is unknown: another cause, or '
                   f'{"this effect" if len(named) == 1 else "one of these effects"} by a law that '
                   'is none of its forms')
     beside = doubts and f'; beside {"it" if len(named) == 1 else "them"}, {doubts}'
     gusts = _gusts_of(found) if unknown else ''
-    if another:
-        beside += (f'; the velocity of {found.held_out}, which was not used for fitting, is '
-                   f'predicted better without {"it" if len(named) == 1 else "them"}')
     if is_uncertain(found):
         best = '; '.join(f'{titled(row.effect)}{_law_of(found, row)}, {values_of(row)}, '
                          f'probability {row.probability:.2g}' for row in named)
         return (f'uncertain: the best known explanation of {share} is less likely than '
-                f'something else that acts alike: {best}{beside if another else ""}{gusts}')
+                f'something else that acts alike: {best}{contradiction}{gusts}')
     if len(named) == 1:
         row, = named
         return (f'{titled(row.effect)}{_law_of(found, row)}, {values_of(row)}, explains {share}'
-                f'{beside}{gusts}')
+                f'{beside}{contradiction}{gusts}')
     return f'{len(named)} effects explain {share}: ' + '; '.join(
         f'{titled(row.effect)}{_law_of(found, row)}, {values_of(row)}, contribution '
-        f'{contribution_of(row)}' for row in named) + beside + gusts
+        f'{contribution_of(row)}' for row in named) + beside + contradiction + gusts
 
 
 def _gusts_of(found: Diagnosis) -> str:
@@ -104,7 +103,7 @@ def next_step(found: Diagnosis, written: str | None = None) -> str:
     if any(one['code'] == 'other_vehicle' for one in found.findings):
         return ('Next: check the vehicle file, which seems to be that of another vehicle, as the '
                 'warning "vehicle file" says, and diagnose again.')
-    if is_of_another(found):
+    if held_out_contradicts(found):
         return (f'Next: see whether {found.held_out} was flown with the same payload and '
                 'propellers as the flights that were fitted. If so, hold out another one '
                 '(--hold-out FLIGHT); if not, diagnose them apart.')
@@ -148,12 +147,12 @@ def is_uncertain(found: Diagnosis) -> bool:
     return bool(named) and all(row.probability < RULES.present for row in named)
 
 
-def is_of_another(found: Diagnosis) -> bool:
+def held_out_contradicts(found: Diagnosis) -> bool:
     """
-    Whether what is named is none of the held-out flight: its velocity is clearly better without.
+    Whether the velocity of the held-out flight is clearly predicted better without what is named.
 
-    Beyond chance and tolerance, where nothing else is better with it. Half of a single flight is
-    of the same vehicle.
+    Beyond chance and tolerance, and where nothing else is predicted better with it. The held-out
+    half of a single flight is of the same vehicle.
     """
     gap, single = found.gap, any(one['code'] == BLOCKS for one in found.findings)
     low, _ = gap.after_interval['velocity']

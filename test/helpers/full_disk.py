@@ -13,7 +13,7 @@ NO_BYTECODE = 'PYTHONDONTWRITEBYTECODE'     # nothing and '' are alike
 @contextmanager
 def file_size_limit(size):
     """Have writes past that size (bytes) fail, as on a full disk."""
-    # Pythons before 3.14 keep bytecode that is cut short, on which every later start ends.
+    # Python 3.11 keeps bytecode that is cut short, and later starts end with an EOFError.
     keeps, sys.dont_write_bytecode = sys.dont_write_bytecode, True
     told, os.environ[NO_BYTECODE] = os.environ.get(NO_BYTECODE, ''), '1'
     soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)

@@ -265,11 +265,12 @@ def test_a_controller_of_a_user_flies_the_vehicle():
     # It has no integrals: a payload pulls it down until the thrust that the error of the height
     # asks for, mass times 4 / s^2 times that, carries the payload.
     heavier = {'mass_offset': {'mass': 0.05}}
-    found = along(flight('hover', effects=heavier), heavier, f'{FILE}:Cascade', without=False)
+    found = along(flight('hover', effects=heavier), heavier, f'{FILE}:Cascade')
     assert found.tracking['corrected']['position'] == pytest.approx(
         0.05 * 9.81 / (0.5 * 4.0), rel=0.01)
     assert found.tracking['nominal']['position'] < 1e-3
     assert found.tracking['real']['position'] < 1e-3       # ours flew it, which has integrals
+    assert found.without['mass_offset'] == found.tracking['nominal']
     assert 0.3 < found.bandwidth['nominal']['yaw'] < 3.0
 
 

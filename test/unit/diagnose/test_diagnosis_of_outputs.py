@@ -36,8 +36,9 @@ def with_outputs(record, told):
 
 
 @pytest.mark.parametrize(('vehicle', 'told'), [
+    (replace(VEHICLE, speed_min=0.0, speed_max=FULL), lambda speed: 1000 + 1000 * speed / FULL),
     (replace(VEHICLE, motors=motors_from('v', CURVE)), duty),
-    (NOWHERE, lambda speed: speed / FULL)], ids=['duty16 by a thrust curve', 'by weight'])
+    (NOWHERE, lambda speed: speed / FULL)], ids=['pwm', 'duty16 by a thrust curve', 'by weight'])
 def test_the_diagnosis_is_that_of_rotor_speeds(vehicle, told):
     records = [commanded([with_outputs(record, told)], vehicle)[0] for record in flown(TRUTH)]
     found = diagnose(records, vehicle)

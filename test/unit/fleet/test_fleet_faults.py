@@ -187,7 +187,7 @@ def test_a_full_disk_is_said_in_one_line_and_the_run_goes_on_later(runs, folder,
 
 LIMITED = """
 import os, resource, sys
-# Pythons before 3.14 keep bytecode that is cut short; workers ask the environment.
+# Python 3.11 keeps bytecode that is cut short; workers ask the environment.
 os.environ['PYTHONDONTWRITEBYTECODE'], sys.dont_write_bytecode = '1', True
 resource.setrlimit(resource.RLIMIT_FSIZE, (5000, 5000))
 if __name__ == '__main__':

@@ -145,7 +145,7 @@ def test_days_that_differ_are_no_change(apart):
     Six vehicles with five flights on each of six days; of 40 such fleets 28 had one where each
     flight was held against single flights alone, and days differed by twice what these do.
     """
-    fleets = 20
+    fleets = 40
     false = sum(alarms(histories([in_days(rng, 6, 5, apart=apart) for _ in range(6)])) > 0
                 for rng in map(np.random.default_rng, range(fleets)))
     assert false <= binom.ppf(0.999, fleets, FALSE)

@@ -67,7 +67,7 @@ def test_false_alarms_are_as_rare_as_stated(vehicles, flights, options):
     Also where one vehicle or three follow no temperature, where each follows it by another share,
     and where temperatures are told badly.
     """
-    fleets = 30
+    fleets = 60
     false = sum(alarms(shared_histories(in_spring(
         np.random.default_rng([2, seed]), vehicles, flights, **options))) > 0
         for seed in range(fleets))
