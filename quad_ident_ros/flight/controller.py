@@ -92,7 +92,12 @@ class Tracking:
     def control(self, seen: np.ndarray, wanted: np.ndarray, dt: float, command: np.ndarray
                 ) -> None:
         """Write rotor speeds command (n,) rad/s for what is SEEN and WANTED; dt s since."""
-        control(seen, wanted, dt, self._gains, self._mixer, self._memory, command)
+        control(seen, wanted, dt, *self.numbers, command)
+
+    @property
+    def numbers(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return gains (GAINS,), mixer (n, 4) and memory (MEMORY,), as control takes them."""
+        return self._gains, self._mixer, self._memory
 
 
 @compiled

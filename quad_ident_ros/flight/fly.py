@@ -151,14 +151,10 @@ def flown(vehicle: Vehicle, theta: np.ndarray, wanted: np.ndarray, errors: np.nd
         count, n = len(phase), len(vehicle.rotors)
         out = (np.empty((count, STATE)), np.empty((count, n)), np.empty((count, n)),
                np.empty((count, 3)), np.empty(count))
-
-        def act(k: int, sight: np.ndarray, command: np.ndarray, phase: np.ndarray = phase) -> None:
-            controller.control(sight, phase[k], 1 / rate, command)
-
         close_loop(with_residual(vehicle_vector(vehicle), vehicle)[:, None], rotor_table(vehicle),
                    acting[:, None].copy(), heading, tilt, rate_tilt, 1 / rate, clock,
-                   clock * FALL, FULL_VOLTAGE, LONGEST_STEP, x, np.ascontiguousarray(seen), act,
-                   *out)
+                   clock * FALL, FULL_VOLTAGE, LONGEST_STEP, x, np.ascontiguousarray(seen),
+                   np.ascontiguousarray(phase), controller, *out)
         if clock:
             out[-1][:] += fallen
             fallen = out[-1][-1]

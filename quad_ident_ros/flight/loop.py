@@ -2,13 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """The closed loop of plant and controller, sample by sample."""
 
-from collections.abc import Callable
-
 import numpy as np
 
 from quad_ident_ros.compiled import compiled
 from quad_ident_ros.effects.registry import SLICES, TABLE
-from quad_ident_ros.flight.controller import SEEN
+from quad_ident_ros.flight.controller import control, Controller, SEEN, Tracking
 from quad_ident_ros.model.actuators import (
     FALL,
     follow,
@@ -34,6 +32,7 @@ from quad_ident_ros.model.situation import (
 DELAY, LAG = SLICES['actuation_delay'].start, SLICES['motor_lag'].start
 BIAS = SLICES['gyro_bias'].start
 EMPTY = 0.7     # of the full voltage, below which none falls: 3 V of the 4.2 V of a cell
+NO_TRACKING = np.empty(0), np.empty((0, 0)), np.empty(0)     # in place of Tracking.numbers
 
 
 @compiled
@@ -57,16 +56,23 @@ def _look(x: np.ndarray, arm: np.ndarray, heading: np.ndarray, tilt: np.ndarray,
 
 
 @compiled(fused=True)
-def _advance(k: int, v: np.ndarray, places: np.ndarray, theta: np.ndarray, dt: float, clock: float,
-             fall: float, full: float, longest: float, state: np.ndarray, speed: np.ndarray,
-             inner: np.ndarray, energy: np.ndarray, u: np.ndarray, s: np.ndarray,
-             rotors: np.ndarray, commands: np.ndarray, speeds: np.ndarray, forces: np.ndarray,
-             drop: np.ndarray) -> None:
+def _fly(first: int, stop: int, gains: np.ndarray, mixer: np.ndarray, memory: np.ndarray,
+         wanted: np.ndarray, errors: np.ndarray, arm: np.ndarray, heading: np.ndarray,
+         tilt: np.ndarray, rate_tilt: np.ndarray, bias: np.ndarray, seen: np.ndarray,
+         v: np.ndarray, places: np.ndarray, theta: np.ndarray, dt: float, clock: float,
+         fall: float, full: float, longest: float, state: np.ndarray, speed: np.ndarray,
+         inner: np.ndarray, energy: np.ndarray, u: np.ndarray, s: np.ndarray, rotors: np.ndarray,
+         states: np.ndarray, commands: np.ndarray, speeds: np.ndarray, forces: np.ndarray,
+         drop: np.ndarray) -> None:
     """
-    Fly from sample k to the next with the commands so far; write what is at sample k.
+    Fly from sample `first` to sample `stop`; write what is at each of them but the last.
 
-    Args: state (13, 1), speed (n, 1), inner (2, n), energy (1,) and u (INPUT + SMOOTHED, 1) go on
-    from sample to sample; the others as of close_loop.
+    Tracking with these gains, mixer and memory controls the flight; with NO_TRACKING the commands
+    and states of these samples are given. One function does both, because every function that
+    contains the model takes long to compile. Args: arm (3,) m from the body origin to the centre
+    of mass; bias (3,) rad/s of the gyro; seen (SEEN,) is written anew at each sample;
+    state (13, 1), speed (n, 1), inner (2, n), energy (1,) and u (INPUT + SMOOTHED, 1) go on from
+    sample to sample; the others as of close_loop.
     """
     n = len(places)
     change, work = np.empty((STATE, 1)), np.empty((4, STATE, 1))
@@ -81,54 +87,58 @@ def _advance(k: int, v: np.ndarray, places: np.ndarray, theta: np.ndarray, dt: f
     lag = acting[LAG]
     end, added = np.empty(n), np.zeros((3, n))
     force, lever = np.empty(3), np.empty(3)
-    arm = s[COM_X:COM_X + 3, 0]
     whole = int(np.floor(theta[DELAY, 0] / dt + 1e-9))
     part = max(theta[DELAY, 0] / dt - whole, 0.0)
     if part < 1e-9:
         part = 0.0
-    if k == 0:
-        speed[:, 0] = commands[0]
-        inner[0] = commands[0]
-        smooth(u[INPUT:, 0], commands[0], np.inf, places, v[5, 0], v[6, 0])
-    drop[k] = min(fall * energy[0], (1.0 - EMPTY) * full)
-    u[5, 0], u[6, 0] = drop[k], drop[k] / full
-    s[TIME, 0] = clock * k * dt
-    # The command that acts changes within the sample where the delay is no multiple of it.
-    before = max(k - whole - (1 if part > 0.0 else 0), 0)
-    for j in range(n):
-        command[j, 0] = commands[before, j]
-        rotors[j, SPEED, 0] = speed[j, 0] if by_law or lag[0] > 0.0 else command[j, 0]
-        speeds[k, j] = rotors[j, SPEED, 0]
-    derivative(state, u, v, places, theta, s, rotors, change)
-    for i in range(3):
-        force[i] = s[FX + i, 0] / s[MASS, 0]
-    rate = state[10:13, 0]
-    lever[:] = np.cross(change[10:13, 0], arm) + np.cross(rate, np.cross(rate, arm))
-    forces[k] = force - lever
-    power = 0.0
-    for j in range(n):
-        power += speeds[k, j] ** 3
-    energy[0] += dt * power * n * n * s[PER_HOVER, 0] ** 3
-    for piece in range(2):
-        length = part * dt if piece == 0 else (1.0 - part) * dt
-        if length == 0.0:
-            continue
+    for k in range(first, stop):
+        if len(gains):
+            states[k] = state[:, 0]
+            _look(states[k], arm, heading, tilt, rate_tilt, bias, errors[k], seen)
+            control(seen, wanted[k], dt, gains, mixer, memory, commands[k])
+        if k == 0:
+            speed[:, 0] = commands[0]
+            inner[0] = commands[0]
+            smooth(u[INPUT:, 0], commands[0], np.inf, places, v[5, 0], v[6, 0])
+        drop[k] = min(fall * energy[0], (1.0 - EMPTY) * full)
+        u[5, 0], u[6, 0] = drop[k], drop[k] / full
+        s[TIME, 0] = clock * k * dt
+        # The command that acts changes within the sample where the delay is no multiple of it.
+        before = max(k - whole - (1 if part > 0.0 else 0), 0)
         for j in range(n):
-            command[j, 0] = commands[before if piece == 0 else max(k - whole, 0), j]
-        pieces = int(np.ceil(length / longest - 1e-9))
-        h[0] = length / pieces
-        for _ in range(pieces):
-            if by_law:
-                end[:] = speed[:, 0]
-                follow(end, inner, commands[before if piece == 0 else max(k - whole, 0)],
-                       h[0], up, down, slew, mean_lag, inner_lag, added)
-                command[:, 0], extra[:, :, 0] = end, added
-            take_up(state, speed, command, h, acting, places, s, rotors, work)
-            step(state, h, u, v, places, theta, speed, command, extra, lag, s, rotors, work)
-            if clock == 0.0:
-                s[TIME, 0] = 0.0
-    if late:
-        smooth(u[INPUT:, 0], commands[k], dt, places, v[5, 0], v[6, 0])
+            command[j, 0] = commands[before, j]
+            rotors[j, SPEED, 0] = speed[j, 0] if by_law or lag[0] > 0.0 else command[j, 0]
+            speeds[k, j] = rotors[j, SPEED, 0]
+        derivative(state, u, v, places, theta, s, rotors, change)
+        for i in range(3):
+            force[i] = s[FX + i, 0] / s[MASS, 0]
+        rate = state[10:13, 0]
+        lever[:] = np.cross(change[10:13, 0], arm) + np.cross(rate, np.cross(rate, arm))
+        forces[k] = force - lever
+        power = 0.0
+        for j in range(n):
+            power += speeds[k, j] ** 3
+        energy[0] += dt * power * n * n * s[PER_HOVER, 0] ** 3
+        for piece in range(2):
+            length = part * dt if piece == 0 else (1.0 - part) * dt
+            if length == 0.0:
+                continue
+            for j in range(n):
+                command[j, 0] = commands[before if piece == 0 else max(k - whole, 0), j]
+            pieces = int(np.ceil(length / longest - 1e-9))
+            h[0] = length / pieces
+            for _ in range(pieces):
+                if by_law:
+                    end[:] = speed[:, 0]
+                    follow(end, inner, commands[before if piece == 0 else max(k - whole, 0)],
+                           h[0], up, down, slew, mean_lag, inner_lag, added)
+                    command[:, 0], extra[:, :, 0] = end, added
+                take_up(state, speed, command, h, acting, places, s, rotors, work)
+                step(state, h, u, v, places, theta, speed, command, extra, lag, s, rotors, work)
+                if clock == 0.0:
+                    s[TIME, 0] = 0.0
+        if late:
+            smooth(u[INPUT:, 0], commands[k], dt, places, v[5, 0], v[6, 0])
 
 
 @compiled(fused=True)
@@ -140,10 +150,9 @@ def _begin(v: np.ndarray, places: np.ndarray, theta: np.ndarray, s: np.ndarray, 
 
 def close_loop(v: np.ndarray, places: np.ndarray, theta: np.ndarray, heading: np.ndarray,
                tilt: np.ndarray, rate_tilt: np.ndarray, dt: float, clock: float, fall: float,
-               full: float, longest: float, x: np.ndarray, errors: np.ndarray,
-               controller: Callable[[int, np.ndarray, np.ndarray], None], states: np.ndarray,
-               commands: np.ndarray, speeds: np.ndarray, forces: np.ndarray, drop: np.ndarray
-               ) -> None:
+               full: float, longest: float, x: np.ndarray, errors: np.ndarray, wanted: np.ndarray,
+               controller: Controller, states: np.ndarray, commands: np.ndarray,
+               speeds: np.ndarray, forces: np.ndarray, drop: np.ndarray) -> None:
     """
     Fly and write what is at each sample: true states (N, 13), commands and speeds (N, n) rad/s.
 
@@ -153,8 +162,7 @@ def close_loop(v: np.ndarray, places: np.ndarray, theta: np.ndarray, heading: np
     Args: v, places: see rigid_body; theta (P, 1); heading (3, 3) from the world to that of the
     attitude; tilt, rate_tilt (3, 3) from the body to the frames of attitude and rate; dt s between
     samples; clock 0 where the time of flight stands still; fall V/s at hover from full V; longest
-    s of an integration step; errors (N, 12) of what is seen; controller(k, seen (SEEN,),
-    command (n,)) writes the command of sample k.
+    s of an integration step; errors (N, 12) of what the controller sees; wanted (N, WANTED).
     """
     n = len(places)
     s, rotors = np.zeros((TABLE, 1)), np.zeros((n, ROTOR_ROWS, 1))
@@ -162,10 +170,18 @@ def close_loop(v: np.ndarray, places: np.ndarray, theta: np.ndarray, heading: np
     state, seen, u = x[:, None].copy(), np.empty(SEEN), np.zeros((INPUT + SMOOTHED, 1))
     _begin(v, places, theta, s, rotors)
     arm, bias = s[COM_X:COM_X + 3, 0].copy(), theta[BIAS:BIAS + 3, 0].copy()
-    for k in range(len(errors)):
-        states[k] = state[:, 0]
-        _look(states[k], arm, heading, tilt, rate_tilt, bias, errors[k], seen)
-        controller(k, seen, commands[k])
-        _advance(k, v, places, theta, dt, clock, fall, full, longest, state, speed, inner, energy,
-                 u, s, rotors, commands, speeds, forces, drop)
+
+    def fly(first: int, stop: int, numbers: tuple[np.ndarray, np.ndarray, np.ndarray]) -> None:
+        _fly(first, stop, *numbers, wanted, errors, arm, heading, tilt, rate_tilt, bias, seen, v,
+             places, theta, dt, clock, fall, full, longest, state, speed, inner, energy, u, s,
+             rotors, states, commands, speeds, forces, drop)
+
+    if isinstance(controller, Tracking):    # without the interpreter at each sample
+        fly(0, len(errors), controller.numbers)
+    else:
+        for k in range(len(errors)):
+            states[k] = state[:, 0]
+            _look(states[k], arm, heading, tilt, rate_tilt, bias, errors[k], seen)
+            controller.control(seen, wanted[k], dt, commands[k])
+            fly(k, k + 1, NO_TRACKING)
     x[:] = state[:, 0]

@@ -12,8 +12,23 @@ import pytest
 
 from quad_ident_ros.effects.registry import EFFECTS, SLICES, vector
 from quad_ident_ros.errors import InputError
-from quad_ident_ros.flight.controller import control, gains_of, MEMORY, mixer_of, SEEN, WANTED
-from quad_ident_ros.flight.fly import FALL, fly_closed_loop, FULL_VOLTAGE, LONGEST_STEP
+from quad_ident_ros.flight.controller import (
+    control,
+    gains_of,
+    MEMORY,
+    mixer_of,
+    SEEN,
+    Tracking,
+    WANTED,
+)
+from quad_ident_ros.flight.fly import (
+    FALL,
+    flown,
+    fly_closed_loop,
+    FULL_VOLTAGE,
+    LONGEST_STEP,
+    SETTLING,
+)
 from quad_ident_ros.flight.measure import MOCAP_IMU
 from quad_ident_ros.flight.trajectories import plan, scale_of, TRAJECTORIES
 from quad_ident_ros.model.attitude import rotation_matrix
@@ -78,6 +93,36 @@ def test_replayed_in_open_loop_a_flight_reproduces_itself(effects):
     wrong = theta.copy()
     wrong[SLICES['thrust_scale']] *= 1.001
     assert replayed_error(record, wrong, 4) > 1e-4
+
+
+class FromOutside:
+    """Tracking, as any other controller: it is asked for its commands at each sample."""
+
+    def __init__(self, vehicle):
+        self.tracking, self.calls = Tracking(vehicle), 0
+
+    def reset(self):
+        self.tracking.reset()
+
+    def control(self, *asked):
+        self.calls += 1
+        self.tracking.control(*asked)
+
+
+@pytest.mark.parametrize('effects', (
+    {}, {'actuation_delay': {'delay': 0.025}, 'motor_lag': {'time_constant': 0.03}}), ids=str)
+def test_a_controller_from_outside_flies_as_one_that_is_compiled_with_the_loop(effects):
+    *places, yaw, yaw_rate = plan('lissajous', PAPER, 6.0, 0)(np.arange(601) / 100.0)
+    wanted = np.concatenate([*places, yaw[:, None], yaw_rate[:, None]], axis=1)
+    errors = 1e-3 * np.random.default_rng(0).standard_normal((len(wanted), 12))
+    # What changes in flight begins another part, to which the controller brings its memory.
+    parts = [(3.0, vector(effects | {'thrust_scale': {'factor': 0.9}}, PAPER))]
+    outside = FromOutside(PAPER)
+    one, other = (flown(PAPER, vector(effects, PAPER), wanted, errors, 100.0, controller, parts)
+                  for controller in (Tracking(PAPER), outside))
+    assert outside.calls == len(wanted) + SETTLING * 100.0     # with those of the hover before
+    for ours, same in zip(one, other, strict=True):
+        np.testing.assert_array_equal(ours, same)
 
 
 def test_replayed_in_longer_steps_what_differs_is_of_fourth_order():
