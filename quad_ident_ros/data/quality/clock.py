@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 import scipy
 
+from quad_ident_ros.data.once import once
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.frames import best_reading
 from quad_ident_ros.data.quality.glitches import jumps
-from quad_ident_ros.data.quality.once import once
 from quad_ident_ros.data.quality.series import Grid
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.model.attitude import conjugate, rotate

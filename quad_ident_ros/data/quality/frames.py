@@ -5,8 +5,8 @@
 import numpy as np
 
 from quad_ident_ros.data.frames import body_vector, world_vector
+from quad_ident_ros.data.once import once
 from quad_ident_ros.data.quality.finding import Finding
-from quad_ident_ros.data.quality.once import once
 from quad_ident_ros.data.quality.series import correlation, explained, Grid, is_rather, WIDTH
 from quad_ident_ros.data.record import FlightRecord, QUATERNION
 from quad_ident_ros.gravity import GRAVITY
