@@ -9,12 +9,13 @@ least squares through the samples around it (Savitzky and Golay, Analytical Chem
 also where these are not evenly spaced.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 
 import numpy as np
 import scipy
 
+from quad_ident_ros.data.once import once
 from quad_ident_ros.data.record import EULER, FlightRecord, QUATERNION
 from quad_ident_ros.model.attitude import euler_from_quaternion, quaternion_from_euler
 
@@ -35,6 +36,7 @@ ALIKE, MOSTLY, QUIET = 0.1, 0.8, 3e-3
 LONGEST = 1e3       # of a quaternion: another check refuses what is more
 STEADY = 1.5        # periods that the steps to both neighbours may have
 MANY = 50           # rows from which on it is told
+NORMAL = 0.6744897501960817     # median of the absolute deviation, of a standard deviation of 1
 
 DIFFERENTIATED = 'differentiated'
 """Info of a record: groups of its states that are derivatives of the others."""
@@ -53,6 +55,7 @@ def missing_motion(record: FlightRecord) -> tuple[str, ...]:
     return tuple(found)
 
 
+@once
 def differenced_motion(record: FlightRecord) -> tuple[str, ...]:
     """Return which of velocity and rate of a record are differences of its pose, row by row."""
     if len(record) < 2 * FEWEST + 1:
@@ -60,9 +63,8 @@ def differenced_motion(record: FlightRecord) -> tuple[str, ...]:
     with np.errstate(all='ignore'):     # values too large to judge, which another check refuses
         return tuple(name for name, columns, moves in (
             ('velocity', VELOCITY, _moves_of_place), ('rate', RATE, _moves_of_attitude))
-            if record.has(*columns) and any(
-                _are_differences(record.t, moved, record.stack(*columns))
-                for moved in moves(record)))
+            if record.has(*columns) and _are_differences(record.t, record.stack(*columns),
+                                                         moves(record)))
 
 
 def _moves_of_place(record: FlightRecord) -> Iterator[np.ndarray]:
@@ -121,11 +123,12 @@ def _turns(record: FlightRecord) -> 'scipy.spatial.transform.Rotation | None':
     return scipy.spatial.transform.Rotation.from_quat(np.roll(q, -1, axis=1))
 
 
-def _are_differences(t: np.ndarray, moved: np.ndarray, slope: np.ndarray) -> bool:
+def _are_differences(t: np.ndarray, slope: np.ndarray, moves: Iterable[np.ndarray]) -> bool:
     """
     Return whether slopes (N, 3) are differences, to the next row, the last one, or of these two.
 
-    Args: t (N,) s; moved (N - 1, 3): how far each row is from the one before.
+    Args: t (N,) s; moves, each (N - 1, 3): how far each row is from the one before, in the
+    readings that there are.
     """
     steps = np.diff(t)
     period = float(np.median(steps))
@@ -134,12 +137,24 @@ def _are_differences(t: np.ndarray, moved: np.ndarray, slope: np.ndarray) -> boo
         return False
     mine, third = slope[1:-1][inner], np.diff(slope, 3, axis=0)
     # White noise as it is.
-    noise = scipy.stats.median_abs_deviation(third, scale='normal') / np.sqrt(20.0)
-    each = moved / steps[:, None]
-    both = (moved[1:] + moved[:-1]) / (steps[1:] + steps[:-1])[:, None]
+    spread = np.median(np.abs(third - np.median(third, axis=0)), axis=0)
+    noise = spread / NORMAL / np.sqrt(20.0)
     return bool(np.all(noise > QUIET)) and any(
         bool(np.all(np.mean(np.abs(mine - other[inner]) < ALIKE * noise, axis=0) > MOSTLY))
-        for other in (each[1:], each[:-1], both))
+        for moved in moves for other in _differences(steps[:, None], moved))
+
+
+def _differences(steps: np.ndarray, moved: np.ndarray) -> Iterator[np.ndarray]:
+    """
+    Yield the slopes (N - 2, 3) of all rows but the first and the last.
+
+    To the next row, to the last one, and from that to the next. Args: steps (N - 1, 1) s and moved
+    (N - 1, 3) from each row to the next.
+    """
+    each = moved / steps
+    yield each[1:]
+    yield each[:-1]
+    yield (moved[1:] + moved[:-1]) / (steps[1:] + steps[:-1])
 
 
 def _slopes(t: np.ndarray, moved: Callable[[np.ndarray, np.ndarray], np.ndarray]) -> np.ndarray:

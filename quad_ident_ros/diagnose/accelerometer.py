@@ -27,8 +27,10 @@ def residual_force(flight: Flight, vehicle: Vehicle, z: np.ndarray,
     if flight.force is None:
         return None
     rows = flight.first[:, None] + np.arange(flight.count)
-    # One step from each recorded state shows the acceleration that the model has there.
-    steps = replace(flight, first=rows.ravel(), count=1)
+    # One step from each recorded state shows the acceleration that the model has there. Rollouts
+    # that overlap have it in common.
+    first, places = np.unique(rows, return_inverse=True)
+    steps = replace(flight, first=first, count=1)
     now, after = flight.states[steps.first], flight.states[steps.first + 1]
     period = flight.course.t[steps.first + 1] - flight.course.t[steps.first]
     change = after[:, 3:6] - now[:, 3:6] - errors_along(
@@ -36,7 +38,7 @@ def residual_force(flight: Flight, vehicle: Vehicle, z: np.ndarray,
     model = change / period[:, None] + [0.0, 0.0, vehicle.gravity]
     body = np.einsum('bji,bj->bi', rotation_matrix(now[:, 6:10]), model)
     measured = 0.5 * (flight.force[steps.first] + flight.force[steps.first + 1])
-    apart = (measured - body).reshape(*rows.shape, 3)
+    apart = (measured - body)[places.reshape(rows.shape)]
     # Of slow records a window has fewer samples than a third difference needs.
     wide = flight.first[:, None] + np.arange(max(flight.count, 4))
     wide = np.minimum(wide, len(flight.force) - 1)

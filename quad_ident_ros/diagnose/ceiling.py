@@ -14,7 +14,7 @@ from quad_ident_ros.diagnose.judgement import Judgement, stability
 from quad_ident_ros.diagnose.measure import residual_wrenches
 from quad_ident_ros.diagnose.residual_fit import residual_fit, windows_of
 from quad_ident_ros.diagnose.residual_wrench import ResidualWrench
-from quad_ident_ros.diagnose.result import Ceiling, ShareClosed
+from quad_ident_ros.diagnose.result import Ceiling, Gap, GapGivenAttitude, ShareClosed
 from quad_ident_ros.greybox.errors import GROUPS
 from quad_ident_ros.greybox.flights import Track
 from quad_ident_ros.greybox.parameters import nominal
@@ -26,13 +26,15 @@ PARTS = {'force': (('position', 'velocity'), range(3)),
 
 
 def ceiling_of(bench: Bench, judged: Judgement, wrenches: Sequence[ResidualWrench],
-               noise: np.ndarray) -> tuple[Ceiling, ResidualFunction | None]:
+               noise: np.ndarray, gap: Gap, given_attitude: GapGivenAttitude
+               ) -> tuple[Ceiling, ResidualFunction | None]:
     """
     Return the Ceiling and the function of state and command that reaches it, None where none does.
 
     Args: wrenches: what the model does not explain of the flights learnt from, and noise (12,):
-    that of their states. A function that the vehicle file has is put aside, for the new one learns
-    what it does, too.
+    that of their states; gap and given_attitude of the flight held out, which say what noise makes
+    of them. A function that the vehicle file has is put aside, for the new one learns what it
+    does, too.
     """
     model, rules = judged.model, bench.rules
     bare = replace(bench.vehicle, residual=None)
@@ -54,8 +56,9 @@ def ceiling_of(bench: Bench, judged: Judgement, wrenches: Sequence[ResidualWrenc
     # A moment alone says nothing of the velocity where that is not measured, and little at once.
     told = 'rate' if shown == ('moment',) else 'velocity'
     free, led = (_share(bench, judged, track, gaps.ends(
-        track, vehicle, model.vectors[-1], bench.horizon), group)
-        for track, group in ((replace(given, guide=None), told), (given, 'velocity')))
+        track, vehicle, model.vectors[-1], bench.horizon), group, of_noise[group])
+        for track, group, of_noise in ((replace(given, guide=None), told, gap.noise),
+                                       (given, 'velocity', given_attitude.noise)))
     return Ceiling(free, led, gain, shown), residual
 
 
@@ -67,13 +70,16 @@ def _only(ends: Ends, groups: Sequence[str]) -> Ends:
     return Ends(errors, ends.t)
 
 
-def _share(bench: Bench, judged: Judgement, track: Track, after: Ends, group: str
+def _share(bench: Bench, judged: Judgement, track: Track, after: Ends, group: str, noise: float
            ) -> ShareClosed:
-    """Return what is closed of the gap of a group, with a standard error by the jackknife."""
+    """
+    Return what is closed of the gap of a group, with a standard error by the jackknife.
+
+    noise: the gap of the group that noise alone makes.
+    """
     model, part = judged.model, GROUPS[group]
     z = model.vectors[-1]
     before = gaps.ends(track, bench.vehicle, nominal(bench.vehicle) + z - model.z, bench.horizon)
-    noise = gaps.noise_gap(track, bench.vehicle, z, judged.noises[-1], bench.horizon)[group]
     block = np.unique((before.t // bench.rules.steady_block).astype(int), return_inverse=True)[1]
     sums = [np.bincount(block, np.sum(one.errors[:, part] ** 2, axis=1))
             for one in (before, after)]

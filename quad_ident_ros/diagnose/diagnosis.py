@@ -111,7 +111,9 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
     remains = measure.unexplained(judged.open_groups, measure.channels(after, vehicle, rules))
     form_unknown = effects_of_unknown_form(bench, judged, remains, after, whole)
     verdict = verdict_of(bench, judged, causes, ruled_out, form_unknown)
-    ceiling, residual = ceiling_of(bench, judged, after, whole)
+    gap, given_attitude = (measure.open_loop_gap(bench, judged),
+                           measure.gap_given_attitude(bench, judged))
+    ceiling, residual = ceiling_of(bench, judged, after, whole, gap, given_attitude)
     told(0.95)
     closed_loop = None if controller is None or reference is None else in_closed_loop(
         controller, reference, bench, judged, lambda share: told(0.95 + 0.05 * share))
@@ -120,11 +122,10 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
     unseen = advice.not_shown(selection, causes, verdict, rules)
     return Diagnosis(
         vehicle=vehicle, verdict=verdict.names, minor=verdict.minor, ranking=verdict.ranking,
-        where=measure.channels(before, vehicle, rules), gap=measure.open_loop_gap(bench, judged),
-        gap_given_attitude=measure.gap_given_attitude(bench, judged),
+        where=measure.channels(before, vehicle, rules), gap=gap, gap_given_attitude=given_attitude,
         ceiling=ceiling,
-        tolerance={name: rules.tolerance(name, gap)
-                   for name, gap in pooled(judged.noise).items()},
+        tolerance={name: rules.tolerance(name, value)
+                   for name, value in pooled(judged.noise).items()},
         unknown=remains if judged.unexplained or form_unknown else (),
         form_unknown=tuple(form_unknown),
         undetermined=verdict.undetermined, sure=verdict.sure,

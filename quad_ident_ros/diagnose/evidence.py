@@ -4,6 +4,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import compress
 
 import numpy as np
 
@@ -42,16 +43,21 @@ class Quadratic:
 def occam(information: np.ndarray, prior: np.ndarray, scatter: float,
           causes: Sequence[Candidate], rules: Rules) -> float:
     """Return the log-evidence that free columns of a prior (C, C) and causes cost."""
-    return float(_volume(information, prior, scatter)
+    return float(_volume(*_scaled(information, prior, scatter))
                  + _odds(np.ones((1, len(causes)), bool), causes, rules)[0])
 
 
-def _volume(information: np.ndarray, prior: np.ndarray, scatter: float) -> np.ndarray:
-    """Return the log-evidence that free columns cost, of a stack (..., C, C)."""
-    wide = np.diagonal(prior, axis1=-2, axis2=-1) ** -0.5
-    size = wide[..., :, None] * wide[..., None, :]
-    return 0.5 * (np.linalg.slogdet(prior * size)[1]
-                  - np.linalg.slogdet((prior + information / scatter) * size)[1])
+def _scaled(information: np.ndarray, prior: np.ndarray, scatter: float
+            ) -> tuple[np.ndarray, np.ndarray]:
+    """Return the precision (C, C) before and after looking, each column in units of its prior."""
+    wide = np.diag(prior) ** -0.5
+    size = wide[:, None] * wide
+    return prior * size, (prior + information / scatter) * size
+
+
+def _volume(before: np.ndarray, after: np.ndarray) -> np.ndarray:
+    """Return the log-evidence that free columns cost, of stacks (..., C, C) as of _scaled."""
+    return 0.5 * (np.linalg.slogdet(before)[1] - np.linalg.slogdet(after)[1])
 
 
 def _odds(member: np.ndarray, causes: Sequence[Candidate], rules: Rules) -> np.ndarray:
@@ -87,10 +93,12 @@ def _evidence(quadratic: Quadratic, member: np.ndarray, rows: dict, rules: Rules
         mine[places] = 1.0
     free = member @ freed > 0.0
     found = np.zeros(free.shape)
+    ridge = quadratic.scatter * quadratic.prior
+    stiff = quadratic.information + ridge
     going = np.arange(len(member))
     while len(going):
         for which, places in _by_size(free, going):
-            found[which[:, None], places] = _solved(quadratic, found[which], places)
+            found[which[:, None], places] = _solved(quadratic, ridge, stiff, found[which], places)
         beyond = free[going] & ((found[going] < quadratic.lower)
                                 | (found[going] > quadratic.upper))
         found[going] = np.where(beyond, np.clip(found[going], quadratic.lower, quadratic.upper),
@@ -103,10 +111,10 @@ def _evidence(quadratic: Quadratic, member: np.ndarray, rows: dict, rules: Rules
     distance = np.where(free, found, 0.0)
     value = -0.5 * (cost / quadratic.scatter
                     + np.sum(distance @ quadratic.prior * distance, axis=1))
+    before, after = _scaled(quadratic.information, quadratic.prior, quadratic.scatter)
     for which, places in _by_size(free, np.arange(len(member))):
-        blocks = places[:, :, None], places[:, None, :]
-        value[which] += _volume(quadratic.information[blocks], quadratic.prior[blocks],
-                                quadratic.scatter)
+        blocks = _blocks(places, len(before))
+        value[which] += _volume(before.take(blocks), after.take(blocks))
     still = (found != 0.0) @ freed.T == 0.0
     value += _odds(member, tuple(rows), rules)
     value[np.any(still & member, axis=1)] = -np.inf
@@ -121,16 +129,25 @@ def _by_size(free: np.ndarray, going: np.ndarray) -> Iterator[tuple[np.ndarray, 
         yield which, np.nonzero(free[which])[1].reshape(len(which), size)
 
 
-def _solved(quadratic: Quadratic, found: np.ndarray, places: np.ndarray) -> np.ndarray:
-    """Return the distances (n, k) of free rows that fit best, the others held as found (n, C)."""
+def _solved(quadratic: Quadratic, ridge: np.ndarray, stiff: np.ndarray, found: np.ndarray,
+            places: np.ndarray) -> np.ndarray:
+    """
+    Return the distances (n, k) of free rows that fit best, the others held as found (n, C).
+
+    Args: ridge (C, C): the prior in units of the cost; stiff (C, C): the information with it.
+    """
     change = found - quadratic.now
     np.put_along_axis(change, places, 0.0, axis=1)
     pull = np.take_along_axis(quadratic.gradient - change @ quadratic.information, places, axis=1)
     # The prior pulls towards no effect, from where the point is now.
-    blocks, now = (places[:, :, None], places[:, None, :]), quadratic.now[places]
-    ridge = quadratic.scatter * quadratic.prior[blocks]
-    pull -= (ridge @ now[..., None])[..., 0]
-    return now + np.linalg.solve(quadratic.information[blocks] + ridge, pull[..., None])[..., 0]
+    blocks, now = _blocks(places, len(stiff)), quadratic.now[places]
+    pull -= (ridge.take(blocks) @ now[..., None])[..., 0]
+    return now + np.linalg.solve(stiff.take(blocks), pull[..., None])[..., 0]
+
+
+def _blocks(places: np.ndarray, size: int) -> np.ndarray:
+    """Return where rows and columns (n, k) stand in a matrix (size, size) laid flat, (n, k, k)."""
+    return size * places[:, :, None] + places[:, None, :]
 
 
 def beam(quadratic: Quadratic, causes: dict, rules: Rules
@@ -155,7 +172,7 @@ def beam(quadratic: Quadratic, causes: dict, rules: Rules
         order = np.argsort(-values, kind='stable')[:BEAM]
         level = _grown(level[order[values[order] > most - BEHIND]], apart, effects)
     values, member, distances = (np.concatenate(part) for part in zip(*found, strict=True))
-    sets = [tuple(names[k] for k in np.flatnonzero(mine)) for mine in member]
+    sets = [tuple(compress(names, mine)) for mine in member.tolist()]
     return [(float(values[k]), sets[k], distances[k])
             for k in np.argsort(-values, kind='stable')]
 

@@ -88,12 +88,13 @@ def _spreads(flights: Sequence[Track], drifts: Sequence[np.ndarray], group: slic
     """Return times (L,) s between samples and the variance of the drift over them (L,)."""
     period = float(np.median([flight.period for flight in flights]))
     strides = np.unique(np.geomspace(1, LONGEST / period, LAGS).astype(int))
+    known = [np.asarray(flight.seen[:, group].all(axis=1)) for flight in flights]
+    pieces = [np.append(0, np.cumsum(np.diff(flight.course.t) > GAP * flight.period))
+              for flight in flights]
     lags, spread = [], []
     for stride in strides:
         found = []
-        for flight, drift in zip(flights, drifts, strict=True):
-            t, seen = flight.course.t, np.asarray(flight.seen[:, group].all(axis=1))
-            piece = np.append(0, np.cumsum(np.diff(t) > GAP * flight.period))
+        for drift, seen, piece in zip(drifts, known, pieces, strict=True):
             whole = (piece[stride:] == piece[:-stride]) & seen[stride:] & seen[:-stride]
             if whole.sum() >= FEWEST:
                 change = (drift[stride:] - drift[:-stride])[whole]

@@ -124,24 +124,21 @@ def rotor_answer(record: FlightRecord) -> RotorAnswer | None:
         return actuated(t, t, commands, theta[None]).speeds[0]
 
     beside = _sag(record, part, speeds)
-
-    def rest_of(answer: np.ndarray, used: slice = slice(None)) -> float:
-        columns = [answer, *(one[used] for one in beside)]
-        return float(np.sum(_apart(speeds[used], columns)[0] ** 2))
-
+    all_of, sparse = (_Measured.of(speeds[used], [one[used] for one in beside])
+                      for used in (slice(None), SPARSE))
     # A delay moves the answer of a lag in time, nearly enough to begin with.
     lagged = [(lag, acted(0.0, lag)) for lag in LAGS]
     near = np.array(min(
-        (rest_of(_moved(t[SPARSE], t, answer, delay), SPARSE), delay, lag)
+        (sparse.unexplained(_moved(t[SPARSE], t, answer, delay)), delay, lag)
         for delay in DELAYS for lag, answer in lagged)[1:])
     best = scipy.optimize.minimize(
-        lambda place: rest_of(acted(*place)), near, method='Nelder-Mead', options={
+        lambda place: all_of.unexplained(acted(*place)), near, method='Nelder-Mead', options={
             'initial_simplex': near + np.array([[0.0, 0.0], [0.005, 0.0], [0.0, 0.005]]),
             'xatol': FINEST, 'fatol': np.inf, 'maxiter': 120}).x
     delay, lag = float(best[0]), max(float(best[1]), 0.0)
     there = [acted(delay, lag), *beside]
-    rest, values = _apart(speeds, there)
-    spread = float(np.sum((speeds - speeds.mean(axis=0)) ** 2))
+    rest, values = all_of.apart(there[0])
+    spread = float(np.sum(all_of.speeds ** 2))
     explained = 1.0 - float(np.sum(rest ** 2)) / max(spread, 1e-300)
     if 1.0 - explained < COPY and max(abs(delay), lag) < COPIED:
         return None
@@ -149,11 +146,11 @@ def rotor_answer(record: FlightRecord) -> RotorAnswer | None:
     step = 0.5 * float(np.median(np.diff(t)))
     slopes = [(acted(delay + step, lag) - acted(delay - step, lag)) / (2 * step),
               (acted(delay, lag + step) - acted(delay, lag)) / step]
-    columns = [values[0] * _apart(slope, there)[0] for slope in slopes]
+    columns = [values[0] * _Measured.of(slope, beside).apart(there[0])[0] for slope in slopes]
     errors = _errors(t, np.stack(columns, axis=-1), rest)
     if lag < 2 * step:      # steps of speed from one sample to the next: anywhere between them
         errors[0] = np.hypot(errors[0], 2 * step / np.sqrt(12.0))
-    others = _errors(t, np.stack([one - one.mean(axis=0) for one in there], axis=-1), rest)
+    others = _errors(t, np.stack([_centred(one) for one in there], axis=-1), rest)
     per_volt = (float(values[1]), float(others[1])) if beside else None
     return RotorAnswer((delay, float(errors[0])), (lag, float(errors[1])),
                        (float(values[0]), float(others[0])), per_volt, explained)
@@ -175,12 +172,37 @@ def _moved(at: np.ndarray, t: np.ndarray, values: np.ndarray, late: float) -> np
     return np.stack([np.interp(at - late, t, column) for column in values.T], axis=-1)
 
 
-def _apart(speeds: np.ndarray, columns: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-    """Return speeds (N, n) less an offset of each rotor and values (C,) times columns; these."""
-    centred = speeds - speeds.mean(axis=0)
-    table = np.stack([(one - one.mean(axis=0)).ravel() for one in columns], axis=-1)
-    values = np.linalg.lstsq(table.T @ table, table.T @ centred.ravel(), rcond=1e-12)[0]
-    return centred - (table @ values).reshape(centred.shape), values
+@dataclass(frozen=True, eq=False)
+class _Measured:
+    """
+    Speeds (N, n) about the mean of each rotor, which answers are held against.
+
+    beside (N n, C): what may be in them beside an answer, likewise.
+    """
+
+    speeds: np.ndarray
+    beside: np.ndarray
+
+    @classmethod
+    def of(cls, speeds: np.ndarray, beside: list[np.ndarray]) -> '_Measured':
+        """Return that of speeds and what may be beside an answer, all (N, n)."""
+        return cls(_centred(speeds), np.reshape([_centred(one).ravel() for one in beside],
+                                                (len(beside), speeds.size)).T)
+
+    def apart(self, answer: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the speeds less values (1 + C,) times an answer (N, n) and beside; the values."""
+        table = np.column_stack([_centred(answer).ravel(), self.beside])
+        values = np.linalg.lstsq(table.T @ table, table.T @ self.speeds.ravel(), rcond=1e-12)[0]
+        return self.speeds - (table @ values).reshape(self.speeds.shape), values
+
+    def unexplained(self, answer: np.ndarray) -> float:
+        """Return the sum of the squares of what an answer leaves of the speeds."""
+        return float(np.sum(self.apart(answer)[0] ** 2))
+
+
+def _centred(values: np.ndarray) -> np.ndarray:
+    """Return values (N, n) about the mean of each column."""
+    return values - values.mean(axis=0)
 
 
 def _errors(t: np.ndarray, columns: np.ndarray, rest: np.ndarray) -> np.ndarray:

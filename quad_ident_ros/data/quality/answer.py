@@ -15,8 +15,8 @@ import numpy as np
 import scipy
 
 from quad_ident_ros.data.attitudes import attitudes_of
+from quad_ident_ros.data.once import once
 from quad_ident_ros.data.quality.finding import Finding
-from quad_ident_ros.data.quality.once import once
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.model.attitude import conjugate, continuous, product, rotate
 from quad_ident_ros.model.vehicle import Vehicle

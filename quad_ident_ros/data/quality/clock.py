@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 import scipy
 
+from quad_ident_ros.data.once import once
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.frames import best_reading
 from quad_ident_ros.data.quality.glitches import jumps
-from quad_ident_ros.data.quality.once import once
 from quad_ident_ros.data.quality.series import Grid
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.model.attitude import conjugate, rotate
@@ -132,7 +132,9 @@ def _centred(signal: np.ndarray) -> np.ndarray:
 
 def _without(beside: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
     """Return the function that takes the mean and signals (N, m) out of others, (N, k)."""
-    basis = np.linalg.qr(_centred(beside))[0] if beside.shape[1] else beside
+    if not beside.shape[1]:
+        return _centred
+    basis = np.linalg.qr(_centred(beside))[0]
 
     def rest(signal: np.ndarray) -> np.ndarray:
         centred = _centred(signal)
@@ -211,7 +213,8 @@ def _refined(t: np.ndarray, spline: 'scipy.interpolate.CubicSpline', late: np.nd
     """
     target, offset = rest_of(late), start
     for _ in range(8):
-        model, slope = rest_of(spline(t - offset)), rest_of(-spline(t - offset, 1))
+        at = t - offset
+        model, slope = rest_of(spline(at)), rest_of(-spline(at, 1))
         power = np.sum(model ** 2)
         if not power > 0:
             return None

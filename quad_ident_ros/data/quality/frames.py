@@ -5,8 +5,8 @@
 import numpy as np
 
 from quad_ident_ros.data.frames import body_vector, world_vector
+from quad_ident_ros.data.once import once
 from quad_ident_ros.data.quality.finding import Finding
-from quad_ident_ros.data.quality.once import once
 from quad_ident_ros.data.quality.series import correlation, explained, Grid, is_rather, WIDTH
 from quad_ident_ros.data.record import FlightRecord, QUATERNION
 from quad_ident_ros.gravity import GRAVITY
@@ -53,7 +53,7 @@ def readings(grid: Grid) -> dict[str, tuple[np.ndarray, float]]:
     found = {}
     gyro = (grid.smooth(grid.signal('wx', 'wy', 'wz'))[grid.good]
             if grid.record.has('wx', 'wy', 'wz') else None)
-    if gyro is None or _still(grid, q):
+    if gyro is None or _still(grid.rate_of(q)[grid.good]):
         return {'as it is': (q, 1.0)}
     for name, read in READINGS.items():
         attitude = read(q)
@@ -61,8 +61,8 @@ def readings(grid: Grid) -> dict[str, tuple[np.ndarray, float]]:
     return found
 
 
-def _still(grid: Grid, attitude: np.ndarray) -> bool:
-    return np.sqrt(np.mean(grid.rate_of(attitude)[grid.good] ** 2)) < STILL
+def _still(rate: np.ndarray) -> bool:
+    return np.sqrt(np.mean(rate ** 2)) < STILL
 
 
 @once
@@ -82,13 +82,17 @@ def best_reading(record: FlightRecord) -> tuple[str, np.ndarray] | tuple[None, N
     return best, found[best][0]
 
 
+@once
 def quaternion(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """Find quaternions in another order or direction, and rates about other body axes."""
     grid = Grid.of(record)
     if grid is None or not record.has(*QUATERNION, 'wx', 'wy', 'wz'):
         return []
     name, attitude = best_reading(record)
-    if name is None or attitude is None or _still(grid, attitude):
+    if name is None or attitude is None:
+        return []
+    rate = grid.rate_of(attitude)[grid.good]
+    if _still(rate):
         return []
     if name != 'as it is':
         code = {'x, y, z, w': 'quaternion_order', 'world to body': 'quaternion_inverse'}
@@ -97,7 +101,6 @@ def quaternion(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
             f'attitude and gyro agree only if the columns are read as {name}',
             'write the quaternion body to world with the scalar first, or name its columns in a '
             'mapping in their order (q: [...], quaternion: xyzw; unit: "-1" reverses a sign)')]
-    rate = grid.rate_of(attitude)[grid.good]
     gyro = grid.smooth(grid.signal('wx', 'wy', 'wz'))[grid.good]
     other = correlation(body_vector(rate, 'FRD'), gyro)[0]
     if other >= SURE and other >= correlation(rate, gyro)[0] + BETTER:
@@ -117,12 +120,12 @@ def rate_in_world(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding
     if grid is None or not record.has(*QUATERNION, 'wx', 'wy', 'wz'):
         return []
     name, attitude = best_reading(record)
-    if attitude is None or name != 'as it is' or _still(grid, attitude):
+    if attitude is None or name != 'as it is':
         return []
-    gyro = grid.signal('wx', 'wy', 'wz')
-    if not is_rather(grid.rate_of(attitude)[grid.good], grid.smooth(gyro)[grid.good],
-                     grid.smooth(rotate(conjugate(attitude), gyro))[grid.good],
-                     WIDTH / grid.period):
+    rate, gyro = grid.rate_of(attitude)[grid.good], grid.signal('wx', 'wy', 'wz')
+    if _still(rate) or not is_rather(
+            rate, grid.smooth(gyro)[grid.good],
+            grid.smooth(rotate(conjugate(attitude), gyro))[grid.good], WIDTH / grid.period):
         return []
     return [Finding('rate_in_world', 'error', 'wx, wy, wz',
                     'attitude and rate agree only if the rate is rotated back by the attitude: it '
@@ -187,6 +190,7 @@ def _opposed(one: np.ndarray, other: np.ndarray) -> list[str]:
             if correlation(one[:, k:k + 1], other[:, k:k + 1])[0] < -SURE]
 
 
+@once
 def world(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """Find records in NED or FRD: the specific force points up in flight."""
     grid = Grid.of(record)
@@ -343,20 +347,19 @@ def velocity_in_body(record: FlightRecord, vehicle: Vehicle | None) -> list[Find
         return []
     moved = grid.derivative(grid.signal('px', 'py', 'pz'))[grid.good]
     velocity = grid.signal('vx', 'vy', 'vz')
-    missed = 1.0 - explained(moved, grid.smooth(velocity)[grid.good])
-    turned = 1.0 - explained(moved, grid.smooth(rotate(attitude, velocity))[grid.good])
-    back = 1.0 - explained(moved, grid.smooth(rotate(conjugate(attitude), velocity))[grid.good])
+    as_it_is, to_world, to_body = (grid.smooth(values)[grid.good] for values in (
+        velocity, rotate(attitude, velocity), rotate(conjugate(attitude), velocity)))
+    missed, turned, back = (1.0 - explained(moved, values)
+                            for values in (as_it_is, to_world, to_body))
     in_world = missed >= TURNED and back <= 0.1 and back <= 0.25 * min(missed, turned)
-    if in_world or is_rather(moved, grid.smooth(velocity)[grid.good],
-                             grid.smooth(rotate(conjugate(attitude), velocity))[grid.good],
-                             WIDTH / grid.period):
+    if in_world or is_rather(moved, as_it_is, to_body, WIDTH / grid.period):
         return [Finding('velocity_in_world', 'error', 'vx, vy, vz',
                         'position and velocity agree only if the velocity is rotated back by the '
                         'attitude: it was read as one in body axes, and is one in world axes',
                         'publish the twist in body axes (base_link), or say frame: world of the '
                         'velocity in a mapping')]
     if missed < TURNED or turned > 0.1 or turned > 0.25 * missed:
-        return _strangers(moved, grid.smooth(velocity)[grid.good])
+        return _strangers(moved, as_it_is)
     return [Finding('velocity_in_body', 'error', 'vx, vy, vz',
                     'position and velocity agree only if the velocity is rotated by the attitude: '
                     'it is in body axes',

@@ -8,10 +8,10 @@ import scipy
 from quad_ident_ros.data.attitudes import attitudes_of
 from quad_ident_ros.data.differentiated import DIFFERENTIATED
 from quad_ident_ros.data.inertial import SUMMED
+from quad_ident_ros.data.once import once
 from quad_ident_ros.data.quality import units
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.frames import best_reading, SURE
-from quad_ident_ros.data.quality.once import once
 from quad_ident_ros.data.quality.series import correlation, Grid
 from quad_ident_ros.data.record import FlightRecord, QUATERNION
 from quad_ident_ros.model.attitude import conjugate, continuous, product

@@ -9,6 +9,7 @@ import numpy as np
 import scipy
 
 from quad_ident_ros.data.inertial import FORCE, is_inertial, RATE
+from quad_ident_ros.data.once import once
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.data.split import part, rejoined, SHORTEST
@@ -73,6 +74,7 @@ def airborne(record: FlightRecord, vehicle: Vehicle) -> FlightRecord:
     return replace(flies, info={**flies.info, 'name': record.info.get('name', 'flight')})
 
 
+@once
 def resting(record: FlightRecord, vehicle: Vehicle) -> np.ndarray:
     """Return whether the vehicle stands or is carried at each sample, (N,) of bool."""
     with np.errstate(all='ignore'):     # values so large that another check refuses them

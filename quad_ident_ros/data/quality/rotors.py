@@ -2,12 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Whether the rotors carry the vehicle; their number, order and spin, by what commands do."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import permutations, product
 
 import numpy as np
 
+from quad_ident_ros.data.once import once
 from quad_ident_ros.data.quality import frames
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.series import Grid
@@ -104,8 +104,7 @@ def confirmed(record: FlightRecord, vehicle: Vehicle | None) -> tuple[str, ...]:
     if (told is None or vehicle is None or told.scores[told.declared] < SURE
             or _wrong(told, vehicle)):
         return ()
-    spins = tuple(rotor.spin for rotor in vehicle.rotors)
-    yaws = _spin_scores(told, spins)[spins] >= _sure(told)
+    yaws = told.spins[tuple(rotor.spin for rotor in vehicle.rotors)] >= told.sure
     return ('rotor_order', 'other_vehicle', *(('rotor_spin',) if yaws else ()))
 
 
@@ -130,21 +129,20 @@ def _wrong(told: '_Evidence', vehicle: Vehicle) -> list[Finding]:
 @dataclass(frozen=True, eq=False)
 class _Evidence:
     """
-    What a flight says of the order of its rotors.
+    What a flight says of the order of its rotors, and of their spins.
 
-    moment (N, 3) on the body and squared commands (N, n) at the times of a grid; lag: samples
-    that the moment comes later; scores {order: mean correlation of roll and pitch at the lag that
-    suits it}; declared: the order of the vehicle file.
+    scores {order: mean correlation of roll and pitch at the lag that suits it}; declared: the
+    order of the vehicle file; spins {spins: correlation of yaw at the lag of the best order}, and
+    sure, the correlation that these need.
     """
 
-    grid: Grid
-    moment: np.ndarray
-    squared: np.ndarray
-    lag: int
     scores: dict[tuple[int, ...], float]
     declared: tuple[int, ...]
+    spins: dict[tuple[int, ...], float]
+    sure: float
 
 
+@once
 def _evidence(record: FlightRecord, vehicle: Vehicle | None) -> _Evidence | None:
     """Return the _Evidence of a record, None where it cannot be held against the vehicle file."""
     names = record.numbered('cmd')
@@ -165,7 +163,8 @@ def _evidence(record: FlightRecord, vehicle: Vehicle | None) -> _Evidence | None
     # Each order where it fits best: at the lag of another one a good order may fit badly.
     scores = {order: max(one[order] for one in by_lag.values()) for order in by_lag[0]}
     lag = max(by_lag, key=lambda one: max(by_lag[one].values()))
-    return _Evidence(grid, moment, squared, lag, scores, tuple(range(len(names))))
+    return _Evidence(scores, tuple(range(len(names))), _spin_scores(grid, moment, squared, lag),
+                     _sure(grid))
 
 
 def _fast(grid: Grid, signal: np.ndarray, slow: float = SLOW) -> np.ndarray:
@@ -192,31 +191,37 @@ def _scores(grid: Grid, moment: np.ndarray, squared: np.ndarray, position: np.nd
     return dict(zip(orders, (each.sum(axis=0) / len(arms)).tolist(), strict=True))
 
 
-def _spin_scores(told: _Evidence, spins: Sequence[int]) -> dict[tuple[int, ...], float]:
-    """Return {spins: correlation of the moment about z with that of the commands}."""
-    moment, squared = (_fast(told.grid, told.grid.smooth(signal, TURN), TURNS)
-                       for signal in (told.moment[:, 2:], told.squared))
-    target, drive = _aligned(told.grid, moment, squared, told.lag)
+def _spin_scores(grid: Grid, moment: np.ndarray, squared: np.ndarray, lag: int
+                 ) -> dict[tuple[int, ...], float]:
+    """
+    Return {spins: correlation of the moment about z with that of the commands}.
+
+    Args: moment (N, 3) on the body and squared commands (N, n); lag: samples that the moment
+    comes later.
+    """
+    moment, squared = (_fast(grid, grid.smooth(signal, TURN), TURNS)
+                       for signal in (moment[:, 2:], squared))
+    target, drive = _aligned(grid, moment, squared, lag)
     power = np.sum(target ** 2)
     scores = {}
-    for choice in product((1, -1), repeat=len(spins)):
+    for choice in product((1, -1), repeat=drive.shape[1]):
         torque = drive @ np.array(choice, float)
         scale = np.sqrt(power * np.sum(torque ** 2))
         scores[choice] = float(np.sum(target[:, 0] * torque) / scale) if scale > 0 else 0.0
     return scores
 
 
-def _sure(told: _Evidence) -> float:
+def _sure(grid: Grid) -> float:
     """Return the correlation that spins need: in a short flight noise alone has much of one."""
-    seconds = np.count_nonzero(told.grid.good) * told.grid.period
-    return max(SURE, CHANCE * np.sqrt(TURN / seconds))
+    seconds = np.count_nonzero(grid.good) * grid.period
+    return max(SURE, CHANCE * float(np.sqrt(TURN / seconds)))
 
 
 def _spin(told: _Evidence, vehicle: Vehicle) -> list[Finding]:
     spins = tuple(rotor.spin for rotor in vehicle.rotors)
-    scores = _spin_scores(told, spins)
+    scores = told.spins
     best = max(scores, key=scores.__getitem__)
-    if scores[best] < _sure(told) or scores[best] < scores[spins] + BETTER:
+    if scores[best] < told.sure or scores[best] < scores[spins] + BETTER:
         return []
     # Roll and pitch leak into the yaw of real vehicles, which looks like other spins, too.
     wrong = scores[spins] < PART * scores[best]

@@ -8,6 +8,7 @@ import numpy as np
 import scipy
 
 from quad_ident_ros.data.attitudes import attitudes_of
+from quad_ident_ros.data.once import once
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.data.streams import slerp
 from quad_ident_ros.gravity import GRAVITY
@@ -41,23 +42,8 @@ class Grid:
 
         None for a record under 1 s.
         """
-        period = record.period()
-        span = record.t[-1] - record.t[0]
-        if span < 1.0 or len(record) < 50 or period > 0.1:
-            return None
-        period *= max(1, min(-(-len(record) // MOST), int(COARSEST / period)))
-        # One bad stamp makes a span without end.
-        count = min(int(span / period) + 1, max(MOST, len(record)))
-        t = record.t[0] + period * np.arange(count)
-        t = t[t <= record.t[-1]]
-        after = np.clip(np.searchsorted(record.t, t), 1, len(record) - 1)
-        wide = record.t[after] - record.t[after - 1] > GAP * period
-        bad = scipy.ndimage.maximum_filter1d(wide.view(np.uint8), 2 * round(WIDTH / period) + 1,
-                                             mode='constant') > 0
-        edge = max(1, round(WIDTH / period))
-        good = ~bad
-        good[:edge] = good[-edge:] = False
-        return cls(record, t, period, good) if good.sum() >= 50 else None
+        even = _even(record)
+        return None if even is None else cls(record, *even)
 
     def signal(self, *names: str) -> np.ndarray:
         """Return columns at t, (N, k)."""
@@ -80,7 +66,8 @@ class Grid:
         half = min(max(1, round(width / 2 / self.period)), len(signal))
         window = np.hanning(2 * half + 3)[1:-1]
         window /= window.sum()
-        padded = np.pad(signal, ((half, half), (0, 0)), mode='edge')
+        padded = np.concatenate([np.repeat(signal[:1], half, axis=0), signal,
+                                 np.repeat(signal[-1:], half, axis=0)])
         if len(window) > DIRECT:
             return scipy.signal.fftconvolve(padded, window[:, None], 'valid', axes=0)
         return np.stack([np.convolve(column, window, 'valid') for column in padded.T], axis=-1)
@@ -112,6 +99,28 @@ class Grid:
     def acceleration(self, attitude: np.ndarray) -> np.ndarray:
         """Return the acceleration in the world from attitude and specific force, (N, 3)."""
         return rotate(attitude, self.force()) - np.array([0.0, 0.0, GRAVITY])
+
+
+@once
+def _even(record: FlightRecord) -> tuple[np.ndarray, float, np.ndarray] | None:
+    """Return the time base (N,) s of the Grid of a record, its period s, and good (N,)."""
+    period = record.period()
+    span = record.t[-1] - record.t[0]
+    if span < 1.0 or len(record) < 50 or period > 0.1:
+        return None
+    period *= max(1, min(-(-len(record) // MOST), int(COARSEST / period)))
+    # One bad stamp makes a span without end.
+    count = min(int(span / period) + 1, max(MOST, len(record)))
+    t = record.t[0] + period * np.arange(count)
+    t = t[t <= record.t[-1]]
+    after = np.clip(np.searchsorted(record.t, t), 1, len(record) - 1)
+    wide = record.t[after] - record.t[after - 1] > GAP * period
+    bad = scipy.ndimage.maximum_filter1d(wide.view(np.uint8), 2 * round(WIDTH / period) + 1,
+                                         mode='constant') > 0
+    edge = max(1, round(WIDTH / period))
+    good = ~bad
+    good[:edge] = good[-edge:] = False
+    return (t, period, good) if good.sum() >= 50 else None
 
 
 def is_rather(target: np.ndarray, signal: np.ndarray, other: np.ndarray, together: float) -> bool:

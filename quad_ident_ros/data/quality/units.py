@@ -4,6 +4,7 @@
 
 import numpy as np
 
+from quad_ident_ros.data.once import once
 from quad_ident_ros.data.quality.finding import Finding
 from quad_ident_ros.data.quality.series import correlation, Grid
 from quad_ident_ros.data.record import EULER, FlightRecord, QUATERNION
@@ -40,6 +41,7 @@ def _rates(record: FlightRecord) -> tuple[np.ndarray, np.ndarray] | None:
     return grid.rate_of(attitude)[grid.good], rate[grid.good]
 
 
+@once
 def rates_in_degrees(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """Find a gyro in deg/s: its rates are 57.3 times those of the attitude."""
     rates = _rates(record) if record.has(*QUATERNION) else None
@@ -140,6 +142,7 @@ def force_in_g(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
                     f'multiply ax, ay and az by {GRAVITY}, or say unit: g in a mapping')]
 
 
+@once
 def position_in_millimetres(record: FlightRecord, vehicle: Vehicle | None) -> list[Finding]:
     """Find positions, or positions and velocities, in mm."""
     grid = Grid.of(record)

@@ -7,7 +7,7 @@ import weakref
 
 from flightmaker import changed, flight
 
-from quad_ident_ros.data.quality.once import once
+from quad_ident_ros.data.once import once
 
 
 def test_a_record_is_looked_at_once():
@@ -23,6 +23,20 @@ def test_a_record_is_looked_at_once():
     assert len(asked) == 1
     assert samples(flight(seconds=2.0)) == 200
     assert len(asked) == 2
+
+
+def test_with_another_vehicle_it_is_looked_at_anew():
+    asked = []
+
+    @once
+    def look(record, vehicle, name=None):
+        asked.append((vehicle, name))
+        return len(asked)
+
+    record, one, other = flight(seconds=1.0), {'mass': 1.0}, {'mass': 1.0}
+    assert [look(record, one), look(record, one), look(record, other)] == [1, 1, 2]
+    assert [look(record, other, name='a'), look(record, other, name='a')] == [3, 3]
+    assert look(record, one) == 4
 
 
 def test_no_record_is_kept():
