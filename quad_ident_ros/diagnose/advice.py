@@ -67,9 +67,18 @@ def at_bounds(judged: Judgement, vehicle: Vehicle, rules: Rules) -> tuple[dict, 
     return tuple(rows)
 
 
-def by_input_errors(judged: Judgement) -> tuple[dict, ...]:
+def by_input_errors(judged: Judgement, commands_have_errors: bool) -> tuple[dict, ...]:
     """Return what errors of the commands may have made, as data of findings."""
     rows = []
+    if commands_have_errors:
+        rows.append({
+            'flight': 'all flights', 'code': 'input_errors', 'severity': 'info',
+            'where': 'commands',
+            'message': 'the rates follow the commands of the samples before more closely than '
+                       'the model does: the controller gives commands between the samples of '
+                       'the log, or the vehicle answers later; how strongly it answers counts '
+                       'by earlier commands alone, and remaining gaps may be due to this',
+            'remedy': 'log commands at the rate of the controller'})
     for cause in judged.model.effects:
         ranges = [f'{NAMES[column].split(".")[1]} {least:.2g} to {most:.2g}'
                   for column, (least, most) in judged.by_commands.items()

@@ -93,7 +93,7 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
         intake = intake.shifted(prompt)
         selection = select(intake.flights, vehicle, causes, rules,
                            lambda share: told(0.7 + 0.05 * share))
-    noise = noise_of(selection, intake, rules)
+    noise = noise_of(selection.best.estimate, intake.flights, vehicle, rules)
     bench = Bench(intake.flights, (*intake.tracks, intake.held_out), vehicle, selection, noise,
                   rules)
     judged = judge(bench)
@@ -139,7 +139,7 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
         flights=intake.names[:-1], held_out=intake.names[-1],
         flight_checks=verdict.flight_checks,
         findings=(*intake.findings, *advice.at_bounds(judged, vehicle, rules),
-                  *advice.by_input_errors(judged)), z=model.z,
+                  *advice.by_input_errors(judged, bench.commands_have_errors)), z=model.z,
         pictures=measure.pictures(bench, judged, before, after),
         covariance=known_together(bench, model, judged.probability), in_simulator=in_simulator,
         closed_loop=closed_loop, residual=residual, recorded=came,

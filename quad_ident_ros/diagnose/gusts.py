@@ -36,5 +36,6 @@ def beside_gusts(bench: Bench, judged: Judgement, intake: Intake, causes: tuple[
     selection = select(intake.flights, bench.vehicle, causes, bench.rules, on_progress, gusty=True)
     if not any(cause.effect == GUSTS.name for cause in selection.best.chosen):
         return bench, judged
-    beside = replace(bench, selection=selection, noise=noise_of(selection, intake, bench.rules))
+    beside = replace(bench, selection=selection, noise=noise_of(
+        selection.best.estimate, intake.flights, bench.vehicle, bench.rules))
     return beside, judge(beside)

@@ -3,15 +3,17 @@
 """What each effect contributes, which effects matter, and whether something unknown remains."""
 
 from collections.abc import Collection, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
 
 from quad_ident_ros.diagnose import gap as gaps
-from quad_ident_ros.diagnose.bench import Bench, Model, tie
+from quad_ident_ros.diagnose.bench import Bench, Model, standard_errors_from_none, tie
 from quad_ident_ros.diagnose.candidates import Candidate
 from quad_ident_ros.diagnose.gap import Noise
+from quad_ident_ros.diagnose.input_errors import answers, gains
+from quad_ident_ros.diagnose.noise import noise_of
 from quad_ident_ros.diagnose.probability import beside_others, presence, probabilities, Support
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.effects.registry import EFFECTS
@@ -78,7 +80,9 @@ def judge(bench: Bench) -> Judgement:
         alone = {removed[0]: one for removed, one in smaller.items() if len(removed) == 1}
         without |= alone
         for cause, support in beside_others(
-                {cause: _support(model, one, before, noise, bench.distance(model, (cause,)), rules)
+                {cause: _support(model, one, before, noise,
+                                 min(bench.distance(model, (cause,)),
+                                     _by_instruments(bench, cause, one)), rules)
                  for cause, one in alone.items()}, rules).items():
             # Beside effects that do not matter it may show more clearly, or less.
             supports[cause] = max(supports.get(cause, support), support,
@@ -99,7 +103,11 @@ def judge(bench: Bench) -> Judgement:
                 if there.get(cause.effect) is cause}
     present = probabilities(bench.selection.posterior, supports, rules)
     absent = tuple(cause for cause in there.values() if present[cause.effect] < rules.present)
-    if set(model.effects) <= set(absent) and closes_half(model.gap, before, noise, rules):
+    # What errors of the commands may have done names no effect, however much of a gap it closes.
+    doubtful = {cause for cause in absent if cause in without
+                and _by_instruments(bench, cause, without[cause]) < rules.shown}
+    if (set(model.effects) <= set(absent) and not doubtful & set(model.effects)
+            and closes_half(model.gap, before, noise, rules)):
         model = _fewest(bench, model, before, noise, present)
         absent = tuple(cause for cause in absent if cause not in model.effects)
     # What needs values that no vehicle has does the work of something else, which it stands for.
@@ -124,6 +132,12 @@ def judge(bench: Bench) -> Judgement:
         final = bench.absent(final, in_any_form(final.effects, (gone,)))
         material = tuple(cause for cause in material if cause is not gone)
         present[gone.effect] = rules.prior_of(gone.effect)
+    if doubtful:
+        # Without an effect that stood for them, more of what remains is by errors of the commands.
+        bench = replace(bench, noise=noise_of(final.estimate, bench.flights, bench.vehicle, rules))
+        noises = bench.noises(final)
+        noise_gaps = bench.noise_gaps(final, noises)
+        noise = pooled(noise_gaps)
     fitted, final = final, bench.without_gusts(final)
     without = {cause: bench.without_gusts(one) for cause, one in without.items()}
     ends = _nominal_ends(bench, final)
@@ -133,6 +147,19 @@ def judge(bench: Bench) -> Judgement:
                      ends, bench.left_out(fitted), noises, noise_gaps,
                      remaining(final.gap, noise, rules),
                      unexplained(final.gap, gaps.gap(ends), noise, bool(material), rules))
+
+
+def _by_instruments(bench: Bench, cause: Candidate, without: Model) -> float:
+    """
+    Return by how many standard errors an effect that answers to commands show differs from none.
+
+    By instruments, where the commands have errors: those by which the answer of the Model without
+    it differs from the vehicle's. inf for other effects, and where the commands show no errors.
+    """
+    told = (answers(without.estimate, bench.flights, bench.vehicle)
+            if gains(list(cause.columns)) and bench.commands_have_errors else None)
+    return np.inf if told is None else standard_errors_from_none(
+        told.gain - 1.0, np.diag(told.error ** 2))
 
 
 def _by_form(model: Model, values: dict) -> dict:

@@ -8,39 +8,43 @@ from dataclasses import replace
 import numpy as np
 
 from quad_ident_ros.diagnose.gap import horizon_of, Noise
-from quad_ident_ros.diagnose.intake import Intake
+from quad_ident_ros.diagnose.input_errors import commands_have_errors
 from quad_ident_ros.diagnose.rules import Rules
-from quad_ident_ros.diagnose.selection import Selection
 from quad_ident_ros.diagnose.state_filter import levels_itself, noise_by_samples
 from quad_ident_ros.greybox.errors import GROUPS
-from quad_ident_ros.greybox.flights import Track
+from quad_ident_ros.greybox.estimate import Estimate
+from quad_ident_ros.greybox.flights import Flight, Track
 from quad_ident_ros.greybox.kinematics import measurement_noise
+from quad_ident_ros.model.vehicle import Vehicle
 
 
-def noise_of(selection: Selection, intake: Intake, rules: Rules) -> Noise:
+def noise_of(best: Estimate, flights: Sequence[Flight], vehicle: Vehicle, rules: Rules) -> Noise:
     """
-    Return the Noise of the flights, from the residuals of the best set and from kinematics.
+    Return the Noise of flights, from the residuals of the best set and from kinematics.
 
     The autocorrelated part of the attitude's noise counts as a tilt, the part that changes from
     sample to sample as its mean over a prediction. The states of a filter that levels itself show
     little noise, and their tilt not at all: it is taken as usual ones are.
     """
-    best = selection.best.estimate
     near, white = noise_by_samples(best)
-    deviation, drift = measurement_noise(intake.flights, best.vectors, near, white)
+    deviation, drift = measurement_noise(flights, best.vectors, near, white)
     attitude = GROUPS['attitude']
-    period = float(np.median([flight.period for flight in intake.flights]))
+    period = float(np.median([flight.period for flight in flights]))
     steady = max(0.0, float(np.mean(deviation[attitude] ** 2 - white[attitude] ** 2)))
-    mean = float(np.mean(white[attitude] ** 2)) * period / horizon_of(intake.flights, rules)
-    levels = levels_itself(best, intake.flights, rules)
+    mean = float(np.mean(white[attitude] ** 2)) * period / horizon_of(flights, rules)
+    levels = levels_itself(best, flights, rules)
     level, drift = (rules.levelling, max(rules.drift, drift)) if levels else (0.0, drift)
     # Beyond its low pass a gyro forgets; the filter of a velocity does not, as positions show.
-    shown = not any('position' in flight.summed for flight in intake.flights)
+    shown = not any('position' in flight.summed for flight in flights)
+    # The controller answers what errors of the commands do, so that they hang together for longer
+    # than forces that differ from sample to sample: all that grows is theirs.
+    by_commands = commands_have_errors(best, flights, vehicle, rules)
+    growth = _beyond if by_commands else random_walk
     remembered = {'velocity': deviation[GROUPS['velocity']] if shown else np.full(3, np.inf),
-                  'rate': np.zeros(3)}
+                  'rate': deviation[GROUPS['rate']] if by_commands else np.zeros(3)}
     walk = np.concatenate([
-        random_walk([(raw[..., GROUPS[name]], flight.period) for raw, flight in
-                     zip(best.residuals, intake.flights, strict=True)], deviations, rules)
+        growth([(raw[..., GROUPS[name]], flight.period) for raw, flight in
+                zip(best.residuals, flights, strict=True)], deviations, rules)
         for name, deviations in remembered.items()])
     return Noise(deviation, white, float(np.sqrt(steady + mean + level ** 2)), drift, walk)
 

@@ -7,10 +7,14 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.diagnose.advice import by_input_errors
 from quad_ident_ros.diagnose.candidates import Candidate
-from quad_ident_ros.diagnose.input_errors import gains, ranges
+from quad_ident_ros.diagnose.diagnosis import diagnose
+from quad_ident_ros.diagnose.input_errors import by_instruments, gains, ranges
 from quad_ident_ros.effects.registry import EFFECTS
+from quad_ident_ros.flight.fly import fly_closed_loop
+from quad_ident_ros.flight.measure import SENSORS
 from quad_ident_ros.greybox.errors import ERRORS
 from quad_ident_ros.greybox.parameters import INDEX, nominal
 from quad_ident_ros.model.vehicle import load_vehicle
@@ -77,8 +81,66 @@ def test_what_errors_may_have_made_is_said_with_its_range():
     cause = Candidate('inertia_mismatch', 'factors', columns)
     judged = SimpleNamespace(model=SimpleNamespace(effects=(cause,)), stand_ins=(cause,),
                              by_commands={columns[0]: (0.6, 4.1)})
-    [one] = by_input_errors(judged)
+    [one] = by_input_errors(judged, False)
     assert one['where'] in EFFECTS and 'factor_x 0.6 to 4.1' in one['message']
     assert 'is not named' in one['message'] and 'factor_y' not in one['message']
     judged.stand_ins = ()
-    assert 'is not named' not in by_input_errors(judged)[0]['message']
+    assert 'is not named' not in by_input_errors(judged, False)[0]['message']
+
+
+def answered(error=0.0, gain=1.0, late=0.0, noise=0.0, seed=5):
+    """
+    Return what a model answers to commands, and what it leaves, by rollout and sample, (B, N, 3).
+
+    The vehicle answers commands that hang together over some samples, so many times as much as
+    the model, with a share of it a sample late; those that the log has differ by independent
+    errors, and follow the noise of the rates, which the controller acts against.
+    """
+    rng = np.random.default_rng(seed)
+    true = rng.normal(size=(300, 27, 3))
+    true = true[:, 2:] + 0.8 * true[:, 1:-1] + 0.6 * true[:, :-2]
+    measured = noise * rng.normal(size=(300, 26, 3))
+    true = true - measured[:, :-1]
+    logged = true + error * rng.normal(size=true.shape)
+    vehicle = gain * ((1.0 - late) * true + late * np.roll(true, 1, axis=1))
+    return logged, vehicle + np.diff(measured, axis=1) - logged
+
+
+@pytest.mark.parametrize('gain', [0.8, 1.0, 1.3])
+@pytest.mark.parametrize('error', [0.5, 1.0, 2.0])
+def test_commands_of_before_tell_the_answer_whatever_the_errors(gain, error):
+    told = by_instruments(*answered(error, gain))
+    assert told.lateness > 5.0
+    assert (np.abs(told.gain - gain) < 3.0 * told.error).all()
+    # A regression on the commands themselves would have another answer by far.
+    assert (np.abs(gain / (1.0 + error ** 2 / 2.0) - gain) > 3.0 * told.error).any()
+
+
+@pytest.mark.parametrize('gain', [0.8, 1.0, 1.3])
+def test_without_errors_the_answer_is_told_as_well_and_no_errors_are_seen(gain):
+    told = by_instruments(*answered(gain=gain, noise=0.01))
+    assert abs(told.lateness) < 3.0
+    assert told.gain == pytest.approx([gain] * 3, abs=0.03)
+
+
+def test_noise_that_commands_answer_is_none_of_their_errors():
+    assert by_instruments(*answered(noise=0.5)).lateness < -3.0
+
+
+def test_an_answer_that_comes_later_shows_as_errors_do():
+    assert by_instruments(*answered(late=0.3)).lateness > 3.0
+
+
+@pytest.mark.slow
+def test_a_log_that_is_slower_than_the_controller_says_so_and_blames_no_effect():
+    seeds = (1, 2, 3)
+    flights = [fly_closed_loop(VEHICLE, {}, 'lissajous', duration=20.0, rate=100.0, seed=seed,
+                               noise=SENSORS['mocap_imu']) for seed in seeds]
+    coarse = [FlightRecord(record.t[::5], {name: values[::5] for name, values
+                                           in record.columns.items()},
+                           record.info | {'name': f'coarse_{seed}'})
+              for seed, record in zip(seeds, flights, strict=True)]
+    for records, seen in ((flights, False), (coarse, True)):
+        found = diagnose(records, VEHICLE)
+        assert found.verdict == ('none',)
+        assert any(one['code'] == 'input_errors' for one in found.findings) == seen

@@ -301,7 +301,7 @@ def test_what_a_flight_has_by_itself_stays_when_effects_are_taken_out_and_flight
     intake = take_in(records, vehicle, None, RULES)
     selection = select(intake.flights, vehicle, candidates(intake.flights, vehicle, RULES), RULES)
     bench = Bench(intake.flights, (*intake.tracks, intake.held_out), vehicle, selection,
-                  noise_of(selection, intake, RULES), RULES)
+                  noise_of(selection.best.estimate, intake.flights, intake.vehicle, RULES), RULES)
     model = bench.model(selection.best.chosen, selection.best.estimate)
     assert {cause.effect for cause in model.effects} == {'gyro_bias', 'motor_lag'}
     removed = tuple(cause for cause in model.effects if cause.effect == 'gyro_bias')
@@ -355,7 +355,7 @@ def test_what_flights_share_by_chance_is_their_own_where_no_effect_is_there():
     intake = take_in(records, vehicle, None, RULES)
     selection = select(intake.flights, vehicle, candidates(intake.flights, vehicle, RULES), RULES)
     bench = Bench(intake.flights, (*intake.tracks, intake.held_out), vehicle, selection,
-                  noise_of(selection, intake, RULES), RULES)
+                  noise_of(selection.best.estimate, intake.flights, intake.vehicle, RULES), RULES)
     model = bench.model(selection.best.chosen, selection.best.estimate)
     [wind] = [cause for cause in model.effects if cause.effect == 'wind']
     column = INDEX['wind.x']
