@@ -106,8 +106,8 @@ class Rules:
         seen, and from which on it is, so is a parameter that shapes a form, and what differs from
         none is no error of the form of others. Noise needs no proof: that of forces and moments
         between the samples counts from `hidden` on. Measured rotor speeds rule a lag or a delay
-        out by `shown`, and by as much what remains has to come and go with an effect to be an
-        error of its form.
+        out by `shown`, by as much commands show errors, and what remains has to come and go with
+        an effect to be an error of its form.
     Tolerance (a gap that matters, by group of outputs, at 0.5 s):
       visible: of the noise's gap: of what can be closed below it, shares mean nothing.
       noise_share: of the noise's gap: what remains below it is hard to see in a prediction, and
