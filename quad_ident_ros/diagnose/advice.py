@@ -96,17 +96,19 @@ def by_input_errors(judged: Judgement, commands_have_errors: bool) -> tuple[dict
     return tuple(rows)
 
 
-def one_finding(verdict: Verdict, flights: Sequence[Flight]) -> tuple[dict, ...]:
+def one_finding(verdict: Verdict, flights: Sequence[Flight], commands_have_errors: bool
+                ) -> tuple[dict, ...]:
     """
     Return what each named effect may be as well, and what measurement would decide, as data.
 
     effects: names that the flights do not separate. Thrust and mass are separated by
-    the moments, so not where the inertia is found to differ, too. A lag and a delay are not
+    the moments, so not where the inertia is found to differ, too, or errors of the commands make
+    the answer to moments seem weaker. A lag and a delay are not
     separated where both are over before the next sample, nor from a gyro that is as late.
     """
     rows, named = [], [name for name in verdict.names if name in EFFECTS]
-    # The moments separate thrust from mass, but not where the inertia is off, too.
-    loose = any(EFFECTS[name].scale_group and EFFECTS[name].ratio is None for name in named)
+    loose = commands_have_errors or any(
+        EFFECTS[name].scale_group and EFFECTS[name].ratio is None for name in named)
     forms = {row.effect: row.form for row in verdict.ranking}
     for effect in (EFFECTS[name] for name in named):
         ratio = [name for name, other in EFFECTS.items()

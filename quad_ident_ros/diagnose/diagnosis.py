@@ -129,7 +129,8 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
         unknown=remains if judged.unexplained or form_unknown else (),
         form_unknown=tuple(form_unknown),
         undetermined=verdict.undetermined, sure=verdict.sure,
-        one_finding=advice.one_finding(verdict, intake.flights), not_shown=tuple(dict.fromkeys(
+        one_finding=advice.one_finding(verdict, intake.flights, bench.commands_have_errors),
+        not_shown=tuple(dict.fromkeys(
             (*unseen, *advice.cannot_show(intake.flights, verdict)))),
         fly_next=advice.fly_next(selection, intake.flights, vehicle, model.z, verdict, unseen,
                                  rules),

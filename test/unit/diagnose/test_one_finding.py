@@ -4,6 +4,7 @@
 
 import pytest
 
+from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import SENSORS
@@ -13,13 +14,15 @@ from quad_ident_ros.report.diagnosis import one_finding_lines
 LATE = {'actuation_delay', 'motor_lag'}
 
 
-def diagnosed(effects):
-    """Return the diagnosis of flights at 100 Hz with some effects."""
+def diagnosed(effects, duration=10.0, every=1):
+    """Return the diagnosis of flights at 100 Hz, of which one in so many rows is logged."""
     vehicle = load_vehicle('hummingbird')
-    return diagnose([fly_closed_loop(vehicle, effects, course, duration=10.0, seed=seed,
-                                     noise=SENSORS['mocap_imu'])
-                     for seed, course in enumerate(('lissajous', 'figure8', 'lissajous'))],
-                    vehicle)
+    flights = [fly_closed_loop(vehicle, effects, course, duration=duration, seed=seed,
+                               noise=SENSORS['mocap_imu'])
+               for seed, course in enumerate(('lissajous', 'figure8', 'lissajous'))]
+    return diagnose([FlightRecord(
+        flight.t[::every], {name: values[::every] for name, values in flight.columns.items()},
+        flight.info) for flight in flights], vehicle)
 
 
 @pytest.mark.slow
@@ -38,3 +41,12 @@ def test_a_lag_and_a_delay_that_are_over_before_the_next_sample_are_one_finding(
 def test_a_lag_of_several_samples_is_a_lag():
     found = diagnosed({'motor_lag': {'time_constant': 0.04}})
     assert found.verdict == ('motor_lag',) and not found.one_finding
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(('every', 'apart'), [(1, True), (5, False)])
+def test_a_log_without_all_commands_does_not_tell_thrust_from_mass(every, apart):
+    found = diagnosed({'thrust_scale': {'factor': 0.85}}, 20.0, every)
+    same = [row['effects'] for row in found.one_finding if row['effect'] == found.verdict[0]]
+    assert found.verdict[0] in {'thrust_scale', 'mass_offset'}
+    assert (['mass_offset', 'thrust_scale'] in same) != apart

@@ -105,3 +105,13 @@ def test_what_may_be_chance_or_helps_elsewhere_is_no_other_vehicle(found):
     assert 'fitted' not in verdict_line(found).partition('which was not used for')[0]
     assert 'payload' not in next_step(found)
     assert any('predicts it worse' in one for one in caution_lines(found))
+
+
+def test_where_commands_are_lacking_the_simulation_is_not_said_to_match():
+    lacking = {'flight': 'all flights', 'code': 'input_errors', 'severity': 'info',
+               'where': 'commands', 'message': '', 'remedy': ''}
+    calm = replace(FOUND, verdict=('none',), fly_next=None, form_unknown=(), findings=(),
+                   nuisances=None)
+    assert 'matches these flights' in next_step(calm)
+    step = next_step(replace(calm, findings=(lacking,)))
+    assert 'at the rate of the controller' in step and 'matches' not in step
