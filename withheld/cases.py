@@ -103,12 +103,16 @@ def _forms(part, strengths):
 
 
 def _logs(rounds):
-    """Return what logging does, beside `none` and effects in turn."""
+    """
+    Return what logging does, beside `none` and effects in turn.
+
+    Where commands are lacking in the log, what it hides is no effect: `none` as often as others.
+    """
     names = ('motor_lag', 'rotor_drag', 'thrust_scale', 'actuation_delay', 'ground_effect',
              'rotor_fault', 'battery_sag')
     cases = []
     for i, log in enumerate(log for log in LOGS if log not in ('', 'dropped')):
-        cases.append(Case('none', {}, log=log))
+        cases += _nones(rounds if LOGS[log].logging.every > 1 else 1, log=log)
         # Where the thrust differs by flight it is no effect that all share.
         some = [name for name in names if log != 'charge' or name not in (
             'thrust_scale', 'battery_sag')]
