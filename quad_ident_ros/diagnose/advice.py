@@ -67,10 +67,10 @@ def at_bounds(judged: Judgement, vehicle: Vehicle, rules: Rules) -> tuple[dict, 
     return tuple(rows)
 
 
-def by_input_errors(judged: Judgement, commands_have_errors: bool) -> tuple[dict, ...]:
+def by_input_errors(judged: Judgement, command_errors: bool) -> tuple[dict, ...]:
     """Return what errors of the commands may have made, as data of findings."""
     rows = []
-    if commands_have_errors:
+    if command_errors:
         rows.append({
             'flight': 'all flights', 'code': 'input_errors', 'severity': 'info',
             'where': 'commands',
@@ -96,7 +96,7 @@ def by_input_errors(judged: Judgement, commands_have_errors: bool) -> tuple[dict
     return tuple(rows)
 
 
-def one_finding(verdict: Verdict, flights: Sequence[Flight], commands_have_errors: bool
+def one_finding(verdict: Verdict, flights: Sequence[Flight], command_errors: bool
                 ) -> tuple[dict, ...]:
     """
     Return what each named effect may be as well, and what measurement would decide, as data.
@@ -107,7 +107,7 @@ def one_finding(verdict: Verdict, flights: Sequence[Flight], commands_have_error
     separated where both are over before the next sample, nor from a gyro that is as late.
     """
     rows, named = [], [name for name in verdict.names if name in EFFECTS]
-    loose = commands_have_errors or any(
+    loose = command_errors or any(
         EFFECTS[name].scale_group and EFFECTS[name].ratio is None for name in named)
     forms = {row.effect: row.form for row in verdict.ranking}
     for effect in (EFFECTS[name] for name in named):

@@ -4,7 +4,6 @@
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from types import MappingProxyType
 
 import numpy as np
@@ -86,12 +85,6 @@ class Bench:
     def horizon(self) -> float:
         """Return the time (s) ahead at which effects are judged."""
         return gaps.horizon_of(self.flights, self.rules)
-
-    @cached_property
-    def commands_have_errors(self) -> bool:
-        """Return whether the best set answers the recorded commands as where these have errors."""
-        return input_errors.commands_have_errors(self.selection.best.estimate, self.flights,
-                                                 self.vehicle, self.rules)
 
     def model(self, chosen: tuple, estimate: Estimate, fixed: np.ndarray | None = None) -> Model:
         """

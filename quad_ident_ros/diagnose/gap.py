@@ -45,7 +45,7 @@ class Noise:
     whose attitude is taken from the record is pulled sideways by it. The walk (6,) is the growth
     per s of the variance of the velocity (m/s)^2 and the rate (rad/s)^2, by forces and moments
     that differ from one sample to the next: those of commands between the samples of a log, or
-    finer than it.
+    finer than it. command_errors: whether the recorded commands show errors.
     """
 
     deviation: np.ndarray
@@ -53,6 +53,7 @@ class Noise:
     tilt: float
     drift: float
     walk: np.ndarray
+    command_errors: bool
 
 
 @dataclass(frozen=True, eq=False)

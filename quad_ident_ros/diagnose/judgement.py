@@ -157,7 +157,7 @@ def _by_instruments(bench: Bench, cause: Candidate, without: Model) -> float:
     it differs from the vehicle's. inf for other effects, and where the commands show no errors.
     """
     told = (answers(without.estimate, bench.flights, bench.vehicle)
-            if gains(list(cause.columns)) and bench.commands_have_errors else None)
+            if gains(list(cause.columns)) and bench.noise.command_errors else None)
     return np.inf if told is None else standard_errors_from_none(
         told.gain - 1.0, np.diag(told.error ** 2))
 

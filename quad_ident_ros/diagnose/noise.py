@@ -38,15 +38,16 @@ def noise_of(best: Estimate, flights: Sequence[Flight], vehicle: Vehicle, rules:
     shown = not any('position' in flight.summed for flight in flights)
     # The controller answers what errors of the commands do, so that they hang together for longer
     # than forces that differ from sample to sample: all that grows is theirs.
-    by_commands = commands_have_errors(best, flights, vehicle, rules)
-    growth = _beyond if by_commands else random_walk
+    command_errors = commands_have_errors(best, flights, vehicle, rules)
+    growth = _beyond if command_errors else random_walk
     remembered = {'velocity': deviation[GROUPS['velocity']] if shown else np.full(3, np.inf),
-                  'rate': deviation[GROUPS['rate']] if by_commands else np.zeros(3)}
+                  'rate': deviation[GROUPS['rate']] if command_errors else np.zeros(3)}
     walk = np.concatenate([
         growth([(raw[..., GROUPS[name]], flight.period) for raw, flight in
                 zip(best.residuals, flights, strict=True)], deviations, rules)
         for name, deviations in remembered.items()])
-    return Noise(deviation, white, float(np.sqrt(steady + mean + level ** 2)), drift, walk)
+    return Noise(deviation, white, float(np.sqrt(steady + mean + level ** 2)), drift, walk,
+                 command_errors)
 
 
 def noise_in(track: Track, z: np.ndarray, noise: Noise) -> Noise:
