@@ -76,9 +76,10 @@ def by_input_errors(judged: Judgement, command_errors: bool) -> tuple[dict, ...]
             'where': 'commands',
             'message': 'the rates follow the commands of the samples before more closely than '
                        'the model does: the controller gives commands between the samples of '
-                       'the log, or the vehicle answers later; how strongly it answers counts '
-                       'by earlier commands alone, and remaining gaps may be due to this',
-            'remedy': 'log commands at the rate of the controller'})
+                       'the log, or the vehicle answers later, or the gyro is filtered; how '
+                       'strongly it answers counts by earlier commands alone, and remaining '
+                       'gaps may be due to this',
+            'remedy': 'log commands at the rate of the controller, and the gyro unfiltered'})
     for cause in judged.model.effects:
         ranges = [f'{NAMES[column].split(".")[1]} {least:.2g} to {most:.2g}'
                   for column, (least, most) in judged.by_commands.items()

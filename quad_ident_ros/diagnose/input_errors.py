@@ -29,9 +29,10 @@ from quad_ident_ros.model.vehicle import Vehicle
 
 AXES = ('roll', 'pitch', 'yaw')
 RATES = {axis: GROUPS['rate'].start + k for k, axis in enumerate(AXES)}
-MOMENTS = [INDEX[f'inertia_mismatch.moment_{axis}'] for axis in 'xyz']
+MOMENT_FACTORS = [INDEX[f'inertia_mismatch.moment_{axis}'] for axis in 'xyz']
 """Factors on the moments of the rotors: what the rates answer to commands is proportional."""
 INSTRUMENTS = 2     # intervals by which the farthest instrument is earlier
+ROLLOUTS = 20       # with fewer, chance makes three standard errors too often: 0.3 % of twenty
 
 
 def gains(columns: list[int]) -> dict[int, Parameter]:
@@ -77,7 +78,8 @@ class Answers:
     gain (3,): the true answer about x, y and z over that of the model; error (3,) of it, standard
     errors; lateness: how much more the rates answer to the commands of before than to those of the
     moment, in standard errors. Errors of the commands make it positive, and so does a vehicle that
-    answers later than the model; noise of the rates, which commands answer, makes it negative.
+    answers, or a gyro that tells, later than the model; noise of the rates, which commands answer,
+    makes it negative.
     """
 
     gain: np.ndarray
@@ -86,27 +88,26 @@ class Answers:
 
 
 def answers(fit: Estimate, flights: Sequence[Flight], vehicle: Vehicle) -> Answers | None:
-    """Return the Answers of a fitted model, or None where rollouts are too short for them."""
-    count = min(flight.count for flight in flights)
-    if count < 2 * INSTRUMENTS:
-        return None
-    changes = [_changes(flight, vehicle, vector, starts, raw) for flight, vector, starts, raw
-               in zip(flights, fit.vectors, fit.starts, fit.residuals, strict=True)]
-    return by_instruments(*(np.concatenate([each[:, :count] for each in one])
-                            for one in zip(*changes, strict=True)))
+    """Return the Answers of a fitted model, or None where too few rollouts are long enough."""
+    return by_instruments([
+        _changes(flight, vehicle, vector, starts, raw) for flight, vector, starts, raw
+        in zip(flights, fit.vectors, fit.starts, fit.residuals, strict=True)
+        if flight.count >= 2 * INSTRUMENTS])
 
 
-def by_instruments(answer: np.ndarray, left: np.ndarray) -> Answers:
+def by_instruments(changes: Sequence[tuple[np.ndarray, np.ndarray]]) -> Answers | None:
     """
-    Return the Answers that changes of rates from sample to sample along rollouts show.
+    Return the Answers that changes of rates from sample to sample along rollouts show, if any.
 
     The instruments are the answer of the interval before and that of the one before this. The
     farther one gives the gain, since within an interval commands answer to the motion that those
     before have made; what the nearer one differs by is an error of it.
-    Args: answer (B, N, 3): changes by the commands, in the model; left (B, N, 3): recorded less
-    predicted changes.
+    Args: changes: of each flight (answer, left), (B, N, 3): by the commands, in the model, and
+    recorded less predicted; 0 where not known.
     """
-    shares, parts = zip(*(_by_instrument(answer, left, lag) for lag in range(1 + INSTRUMENTS)),
+    if sum(len(answer) for answer, _ in changes) < ROLLOUTS:
+        return None
+    shares, parts = zip(*(_by_instrument(changes, lag) for lag in range(1 + INSTRUMENTS)),
                         strict=True)
     now, near, far = shares
     late = (near - now) / np.maximum(_deviation(parts[1] - parts[0]), 1e-300)
@@ -123,29 +124,38 @@ def commands_have_errors(fit: Estimate, flights: Sequence[Flight], vehicle: Vehi
 
 def _changes(flight: Flight, vehicle: Vehicle, vector: np.ndarray, starts: np.ndarray,
              residuals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return changes (B, count, 3) of rates along rollouts: the model's answer, and residuals."""
+    """
+    Return changes (B, count, 3) of rates along rollouts: the model's answer, and residuals.
+
+    0 where one of the two samples was not seen, or the commands between them were lost.
+    """
     rates, size = GROUPS['rate'], limits(vehicle)[2]
     base = errors_along(flight, vehicle, vector, starts)[..., rates]
     answer = np.empty_like(base)
-    for k, column in enumerate(MOMENTS):
+    for k, column in enumerate(MOMENT_FACTORS):
         more = vector.copy()
         more[column] += size[column]
         less = errors_along(flight, vehicle, more, starts)[..., rates]
         answer[..., k] = (base - less)[..., k] * vector[column] / size[column]
-    return np.diff(answer, axis=1), np.diff(residuals[..., rates], axis=1)
+    rows = flight.first[:, None] + np.arange(flight.count + 1)
+    seen = flight.seen[rows][..., rates]
+    known = seen[:, 1:] & seen[:, :-1]
+    if flight.lost is not None:
+        known &= ~flight.lost[rows[:, :-1], None]
+    return (np.where(known, np.diff(answer, axis=1), 0.0),
+            np.where(known, np.diff(residuals[..., rates], axis=1), 0.0))
 
 
-def _by_instrument(answer: np.ndarray, left: np.ndarray, lag: int
+def _by_instrument(changes: Sequence[tuple[np.ndarray, np.ndarray]], lag: int
                    ) -> tuple[np.ndarray, np.ndarray]:
     """
     Return how much more, as a share (3,), rates answer, and what each rollout moves it by (B, 3).
 
-    Args: answer, left (B, N, 3) as of by_instruments; lag: how many intervals earlier the
-    instrument is.
+    Args: changes as of by_instruments; lag: how many intervals earlier the instrument is.
     """
-    count = answer.shape[1] - lag
-    before = answer[:, :count]
-    with_left, with_answer = ((before * each[:, lag:]).sum(axis=1) for each in (left, answer))
+    with_left, with_answer = (np.concatenate([
+        (pair[0][:, :pair[0].shape[1] - lag] * pair[k][:, lag:]).sum(axis=1) for pair in changes])
+        for k in (1, 0))
     total = with_answer.sum(axis=0)
     total = np.where(np.abs(total) < 1e-300, 1e-300, total)
     share = with_left.sum(axis=0) / total
@@ -154,4 +164,4 @@ def _by_instrument(answer: np.ndarray, left: np.ndarray, lag: int
 
 def _deviation(parts: np.ndarray) -> np.ndarray:
     """Return the standard error (K,) of sums over rollouts (B, K), which are independent."""
-    return np.sqrt(np.sum(parts ** 2, axis=0))
+    return np.sqrt(len(parts) / (len(parts) - 1.0) * np.sum(parts ** 2, axis=0))

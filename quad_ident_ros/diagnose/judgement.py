@@ -106,9 +106,10 @@ def judge(bench: Bench) -> Judgement:
     # What errors of the commands may have done names no effect, however much of a gap it closes.
     doubtful = {cause for cause in absent if cause in without
                 and _by_instruments(bench, cause, without[cause]) < rules.shown}
-    if (set(model.effects) <= set(absent) and not doubtful & set(model.effects)
-            and closes_half(model.gap, before, noise, rules)):
-        model = _fewest(bench, model, before, noise, present)
+    aside = tuple(cause for cause in model.effects if cause in doubtful)
+    rest = bench.without(model, aside) if aside else model
+    if set(model.effects) <= set(absent) and closes_half(rest.gap, before, noise, rules):
+        model = _fewest(bench, rest, before, noise, present)
         absent = tuple(cause for cause in absent if cause not in model.effects)
     # What needs values that no vehicle has does the work of something else, which it stands for.
     by_commands = bench.by_commands(model)
@@ -134,7 +135,8 @@ def judge(bench: Bench) -> Judgement:
         present[gone.effect] = rules.prior_of(gone.effect)
     if doubtful:
         # Without an effect that stood for them, more of what remains is by errors of the commands.
-        bench = replace(bench, noise=noise_of(final.estimate, bench.flights, bench.vehicle, rules))
+        bench = replace(bench, noise=noise_of(final.estimate, bench.flights, bench.vehicle, rules,
+                                              bench.noise.command_errors))
         noises = bench.noises(final)
         noise_gaps = bench.noise_gaps(final, noises)
         noise = pooled(noise_gaps)

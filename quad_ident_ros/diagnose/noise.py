@@ -18,13 +18,15 @@ from quad_ident_ros.greybox.kinematics import measurement_noise
 from quad_ident_ros.model.vehicle import Vehicle
 
 
-def noise_of(best: Estimate, flights: Sequence[Flight], vehicle: Vehicle, rules: Rules) -> Noise:
+def noise_of(best: Estimate, flights: Sequence[Flight], vehicle: Vehicle, rules: Rules,
+             command_errors: bool | None = None) -> Noise:
     """
     Return the Noise of flights, from the residuals of the best set and from kinematics.
 
     The autocorrelated part of the attitude's noise counts as a tilt, the part that changes from
     sample to sample as its mean over a prediction. The states of a filter that levels itself show
     little noise, and their tilt not at all: it is taken as usual ones are.
+    Args: command_errors: whether the commands show errors, where that is known.
     """
     near, white = noise_by_samples(best)
     deviation, drift = measurement_noise(flights, best.vectors, near, white)
@@ -36,9 +38,10 @@ def noise_of(best: Estimate, flights: Sequence[Flight], vehicle: Vehicle, rules:
     level, drift = (rules.levelling, max(rules.drift, drift)) if levels else (0.0, drift)
     # Beyond its low pass a gyro forgets; the filter of a velocity does not, as positions show.
     shown = not any('position' in flight.summed for flight in flights)
+    if command_errors is None:
+        command_errors = commands_have_errors(best, flights, vehicle, rules)
     # The controller answers what errors of the commands do, so that they hang together for longer
     # than forces that differ from sample to sample: all that grows is theirs.
-    command_errors = commands_have_errors(best, flights, vehicle, rules)
     growth = _beyond if command_errors else random_walk
     remembered = {'velocity': deviation[GROUPS['velocity']] if shown else np.full(3, np.inf),
                   'rate': deviation[GROUPS['rate']] if command_errors else np.zeros(3)}

@@ -136,8 +136,9 @@ def next_step(found: Diagnosis, written: str | None = None) -> str:
     if _needed(found):
         return _mend_flights(found)
     if any((one['code'], one['where']) == ('input_errors', 'commands') for one in found.findings):
-        return ('Next: log the commands at the rate of the controller. What this log lacks of '
-                'them counts as noise here, so that smaller effects may be present.')
+        return ('Next: log the commands at the rate of the controller, and the gyro unfiltered. '
+                'What this log lacks of them counts as noise here, so that smaller effects may be '
+                'present.')
     if found.not_shown:
         return ('Next: nothing; the simulation matches these flights, but the effects in the line '
                 '"would not show" may be present.')

@@ -11,11 +11,13 @@ from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.diagnose.advice import by_input_errors
 from quad_ident_ros.diagnose.candidates import Candidate
 from quad_ident_ros.diagnose.diagnosis import diagnose
-from quad_ident_ros.diagnose.input_errors import by_instruments, gains, ranges
+from quad_ident_ros.diagnose.input_errors import answers, by_instruments, gains, ranges
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import SENSORS
 from quad_ident_ros.greybox.errors import ERRORS
+from quad_ident_ros.greybox.flights import flight_of, track_of
+from quad_ident_ros.greybox.linear import errors_along
 from quad_ident_ros.greybox.parameters import INDEX, nominal
 from quad_ident_ros.model.vehicle import load_vehicle
 
@@ -109,7 +111,7 @@ def answered(error=0.0, gain=1.0, late=0.0, noise=0.0, seed=5):
 @pytest.mark.parametrize('gain', [0.8, 1.0, 1.3])
 @pytest.mark.parametrize('error', [0.5, 1.0, 2.0])
 def test_commands_of_before_tell_the_answer_whatever_the_errors(gain, error):
-    told = by_instruments(*answered(error, gain))
+    told = by_instruments([answered(error, gain)])
     assert told.lateness > 5.0
     assert (np.abs(told.gain - gain) < 3.0 * told.error).all()
     # A regression on the commands themselves would have another answer by far.
@@ -118,17 +120,60 @@ def test_commands_of_before_tell_the_answer_whatever_the_errors(gain, error):
 
 @pytest.mark.parametrize('gain', [0.8, 1.0, 1.3])
 def test_without_errors_the_answer_is_told_as_well_and_no_errors_are_seen(gain):
-    told = by_instruments(*answered(gain=gain, noise=0.01))
+    told = by_instruments([answered(gain=gain, noise=0.01)])
     assert abs(told.lateness) < 3.0
     assert told.gain == pytest.approx([gain] * 3, abs=0.03)
 
 
 def test_noise_that_commands_answer_is_none_of_their_errors():
-    assert by_instruments(*answered(noise=0.5)).lateness < -3.0
+    assert by_instruments([answered(noise=0.5)]).lateness < -3.0
 
 
 def test_an_answer_that_comes_later_shows_as_errors_do():
-    assert by_instruments(*answered(late=0.3)).lateness > 3.0
+    assert by_instruments([answered(late=0.3)]).lateness > 3.0
+
+
+def test_a_few_rollouts_tell_nothing():
+    answer, left = answered(1.0)
+    assert by_instruments([(answer[:10], left[:10]), (answer[:9, :8], left[:9, :8])]) is None
+    assert by_instruments([(answer[:10], left[:10]), (answer[:10, :8], left[:10, :8])]) is not None
+
+
+def test_a_complete_log_of_one_flight_leaves_what_others_lack_to_be_seen():
+    complete, lacking = answered(noise=0.01), answered(1.0, seed=6)
+    short = tuple(each[:, :10] for each in complete)
+    assert by_instruments([short, lacking, lacking]).lateness > 5.0
+
+
+def thinned(record, every):
+    """Return a record of which one in so many rows is logged."""
+    return FlightRecord(record.t[::every], {name: values[::every] for name, values
+                                            in record.columns.items()}, record.info)
+
+
+@pytest.mark.parametrize('factor', [0.8, 1.0, 1.25])
+def test_the_answer_of_another_inertia_is_told(factor):
+    truth = {'inertia_mismatch': dict.fromkeys(('factor_x', 'factor_y', 'factor_z'), factor)}
+    flights = [flight_of(track_of(fly_closed_loop(VEHICLE, truth, course, duration=20.0,
+                                                  seed=seed), VEHICLE))
+               for seed, course in enumerate(('lissajous', 'steps'))]
+    z = nominal(VEHICLE)
+    starts = [flight.states[flight.first] for flight in flights]
+    fit = SimpleNamespace(vectors=[z, z], starts=starts, residuals=[
+        errors_along(flight, VEHICLE, z, start)
+        for flight, start in zip(flights, starts, strict=True)])
+    told = answers(fit, flights, VEHICLE)
+    assert told.gain == pytest.approx([1.0 / factor] * 3, abs=0.05)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize('every', [1, 5])
+def test_an_inertia_is_named_in_a_log_that_lacks_commands_as_well(every):
+    truth = {'inertia_mismatch': {'factor_x': 1.5, 'factor_y': 1.5, 'factor_z': 1.2}}
+    found = diagnose([thinned(fly_closed_loop(VEHICLE, truth, 'lissajous', duration=20.0,
+                                              seed=seed, noise=SENSORS['mocap_imu']), every)
+                      for seed in (1, 2, 3)], VEHICLE)
+    assert 'inertia_mismatch' in found.verdict
 
 
 @pytest.mark.slow
@@ -136,10 +181,7 @@ def test_a_log_that_is_slower_than_the_controller_says_so_and_blames_no_effect()
     seeds = (1, 2, 3)
     flights = [fly_closed_loop(VEHICLE, {}, 'lissajous', duration=20.0, rate=100.0, seed=seed,
                                noise=SENSORS['mocap_imu']) for seed in seeds]
-    coarse = [FlightRecord(record.t[::5], {name: values[::5] for name, values
-                                           in record.columns.items()},
-                           record.info | {'name': f'coarse_{seed}'})
-              for seed, record in zip(seeds, flights, strict=True)]
+    coarse = [thinned(record, 5) for record in flights]
     for records, seen in ((flights, False), (coarse, True)):
         found = diagnose(records, VEHICLE)
         assert found.verdict == ('none',)
