@@ -45,17 +45,22 @@ def keep(document: Path, result: dict, day: datetime.date) -> None:
         folder = document.with_suffix('')
         folder.mkdir(exist_ok=True)
         number = len(list(folder.glob('run_*.md'))) + 1
-        (folder / f'run_{number:02d}.md').write_text(apart(before), encoding='utf-8')
+        (folder / f'run_{number:02d}.md').write_text(apart(before, document.name),
+                                                     encoding='utf-8')
     head = (f'### {day}, version {result["version"]}: {result["count"]} cases, '
             f'seed {result["seed"]}')
     document.write_text(f'{page}{LATEST}\n{head}\n\n{markdown(result)}\n', encoding='utf-8')
     document.write_text(with_tables(document), encoding='utf-8')
 
 
-def apart(run: str) -> str:
-    """Return the section of a run as a page of its own, one folder deeper."""
+def apart(run: str, page: str) -> str:
+    """Return the section of a run on a page as a page of its own, one folder deeper."""
     run = re.sub(r'^###', '##', run.strip(), flags=re.M).replace('## ', '# ', 1)
-    return re.sub(r'\]\((?!https?:|#)', '](../', run) + '\n'
+    headings = {re.sub(r'[^\w -]', '', heading.lower()).replace(' ', '-')
+                for heading in re.findall(r'^#+ (.*)$', run, flags=re.M)}
+    run = re.sub(r'\]\((?!https?:|#)', '](../', run)
+    return re.sub(r'\]\(#([^)]*)\)', lambda link: link[0] if link[1] in headings
+                  else f'](../{page}#{link[1]})', run) + '\n'
 
 
 def with_tables(document: Path) -> str:

@@ -64,7 +64,7 @@ def test_rows_that_are_lost_between_those_of_a_thinned_flight_count_too():
 def test_forces_and_moments_between_the_samples_walk(record):
     """The closed forms of a random walk and of its integral (Maybeck 1979)."""
     walk = np.array([1e-2, 2e-2, 3e-2, 0.1, 0.2, 0.3])
-    none = Noise(np.zeros(12), np.zeros(12), 0.0, 0.0, walk)
+    none = Noise(np.zeros(12), np.zeros(12), 0.0, 0.0, walk, False)
     found = noise_gap(guided(track_of(record, VEHICLE)), VEHICLE, nominal(VEHICLE), none, HORIZON)
     pushed, turned = walk[:3].sum(), walk[3:].sum()
     assert found['velocity'] == pytest.approx(np.sqrt(pushed * HORIZON))

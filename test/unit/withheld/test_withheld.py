@@ -643,6 +643,15 @@ def test_the_latest_run_is_on_the_page_and_older_ones_in_files(tmp_path):
     assert all(row.split('|')[4] == ' 100 % of 1 ' for row in rows)
 
 
+def test_links_of_a_run_lead_to_where_they_led_once_it_has_a_page_of_its_own():
+    from withheld.page import apart
+    run = ('### A run\n[a](#later), [b](#all-runs), [c](method.md#noise), [d](https://x.org/#e)\n'
+           '### Later\n')
+    assert apart(run, 'withheld.md') == (
+        '# A run\n[a](#later), [b](../withheld.md#all-runs), [c](../method.md#noise), '
+        '[d](https://x.org/#e)\n## Later\n')
+
+
 def test_the_help_says_why_no_cluster_is_used(capsys):
     from withheld.__main__ import main
     with pytest.raises(SystemExit):
