@@ -32,7 +32,6 @@ RATES = {axis: GROUPS['rate'].start + k for k, axis in enumerate(AXES)}
 MOMENT_FACTORS = [INDEX[f'inertia_mismatch.moment_{axis}'] for axis in 'xyz']
 """Factors on the moments of the rotors: what the rates answer to commands is proportional."""
 INSTRUMENTS = 2     # intervals by which the farthest instrument is earlier
-ROLLOUTS = 20       # with fewer, chance makes three standard errors too often: 0.3 % of twenty
 
 
 def gains(columns: list[int]) -> dict[int, Parameter]:
@@ -87,17 +86,19 @@ class Answers:
     lateness: float
 
 
-def answers(fit: Estimate, flights: Sequence[Flight], vehicle: Vehicle) -> Answers | None:
+def answers(fit: Estimate, flights: Sequence[Flight], vehicle: Vehicle, rules: Rules
+            ) -> Answers | None:
     """Return the Answers of a fitted model, or None where too few rollouts are long enough."""
-    return by_instruments([
-        _changes(flight, vehicle, vector, starts, raw) for flight, vector, starts, raw
-        in zip(flights, fit.vectors, fit.starts, fit.residuals, strict=True)
-        if flight.count >= 2 * INSTRUMENTS])
+    changes = [_changes(flight, vehicle, vector, starts, raw) for flight, vector, starts, raw
+               in zip(flights, fit.vectors, fit.starts, fit.residuals, strict=True)
+               if flight.count >= 2 * INSTRUMENTS]
+    few = sum(len(answer) for answer, _ in changes) < rules.told_by
+    return None if few else by_instruments(changes)
 
 
-def by_instruments(changes: Sequence[tuple[np.ndarray, np.ndarray]]) -> Answers | None:
+def by_instruments(changes: Sequence[tuple[np.ndarray, np.ndarray]]) -> Answers:
     """
-    Return the Answers that changes of rates from sample to sample along rollouts show, if any.
+    Return the Answers that changes of rates from sample to sample along rollouts show.
 
     The instruments are the answer of the interval before and that of the one before this. The
     farther one gives the gain, since within an interval commands answer to the motion that those
@@ -105,8 +106,6 @@ def by_instruments(changes: Sequence[tuple[np.ndarray, np.ndarray]]) -> Answers 
     Args: changes: of each flight (answer, left), (B, N, 3): by the commands, in the model, and
     recorded less predicted; 0 where not known.
     """
-    if sum(len(answer) for answer, _ in changes) < ROLLOUTS:
-        return None
     shares, parts = zip(*(_by_instrument(changes, lag) for lag in range(1 + INSTRUMENTS)),
                         strict=True)
     now, near, far = shares
@@ -118,7 +117,7 @@ def by_instruments(changes: Sequence[tuple[np.ndarray, np.ndarray]]) -> Answers 
 def commands_have_errors(fit: Estimate, flights: Sequence[Flight], vehicle: Vehicle, rules: Rules
                          ) -> bool:
     """Return whether rates answer the commands of before more than those of the moment."""
-    told = answers(fit, flights, vehicle)
+    told = answers(fit, flights, vehicle, rules)
     return told is not None and told.lateness >= rules.shown
 
 

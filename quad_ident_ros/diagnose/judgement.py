@@ -158,7 +158,7 @@ def _by_instruments(bench: Bench, cause: Candidate, without: Model) -> float:
     By instruments, where the commands have errors: those by which the answer of the Model without
     it differs from the vehicle's. inf for other effects, and where the commands show no errors.
     """
-    told = (answers(without.estimate, bench.flights, bench.vehicle)
+    told = (answers(without.estimate, bench.flights, bench.vehicle, bench.rules)
             if gains(list(cause.columns)) and bench.noise.command_errors else None)
     return np.inf if told is None else standard_errors_from_none(
         told.gain - 1.0, np.diag(told.error ** 2))

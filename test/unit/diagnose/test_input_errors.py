@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Errors of commands make a vehicle seem to answer less: the range that holds what is true."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -12,6 +13,7 @@ from quad_ident_ros.diagnose.advice import by_input_errors
 from quad_ident_ros.diagnose.candidates import Candidate
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.diagnose.input_errors import answers, by_instruments, gains, ranges
+from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.flight.fly import fly_closed_loop
 from quad_ident_ros.flight.measure import SENSORS
@@ -133,10 +135,19 @@ def test_an_answer_that_comes_later_shows_as_errors_do():
     assert by_instruments([answered(late=0.3)]).lateness > 3.0
 
 
-def test_a_few_rollouts_tell_nothing():
-    answer, left = answered(1.0)
-    assert by_instruments([(answer[:10], left[:10]), (answer[:9, :8], left[:9, :8])]) is None
-    assert by_instruments([(answer[:10], left[:10]), (answer[:10, :8], left[:10, :8])]) is not None
+def by_chance(rollouts, draws=1000):
+    """Return how often commands without errors seem to have some, of so many rollouts."""
+    rng, found = np.random.default_rng(7), 0
+    for _ in range(draws):
+        answer = rng.normal(size=(rollouts, 28, 3))
+        answer = answer[:, 2:] + 0.8 * answer[:, 1:-1] + 0.6 * answer[:, :-2]
+        told = by_instruments([(answer, rng.normal(size=answer.shape))])
+        found += told.lateness >= Rules().shown
+    return found / draws
+
+
+def test_from_as_many_rollouts_as_are_asked_for_chance_rarely_shows_errors():
+    assert by_chance(Rules().told_by) < 0.01 < by_chance(3)
 
 
 def test_a_complete_log_of_one_flight_leaves_what_others_lack_to_be_seen():
@@ -162,8 +173,10 @@ def test_the_answer_of_another_inertia_is_told(factor):
     fit = SimpleNamespace(vectors=[z, z], starts=starts, residuals=[
         errors_along(flight, VEHICLE, z, start)
         for flight, start in zip(flights, starts, strict=True)])
-    told = answers(fit, flights, VEHICLE)
+    told = answers(fit, flights, VEHICLE, Rules())
     assert told.gain == pytest.approx([1.0 / factor] * 3, abs=0.05)
+    more = sum(len(flight.first) for flight in flights) + 1
+    assert answers(fit, flights, VEHICLE, replace(Rules(), told_by=more)) is None
 
 
 @pytest.mark.slow
