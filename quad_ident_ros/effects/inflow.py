@@ -3,7 +3,7 @@
 """Thrust depends on the axial and the horizontal air velocity of the rotor."""
 
 from quad_ident_ros.compiled import compiled
-from quad_ident_ros.effects import inflow_curve, inflow_momentum, inflow_speed
+from quad_ident_ros.effects import inflow_curve, inflow_momentum, inflow_overall, inflow_speed
 from quad_ident_ros.effects.base import Effect, Form, Parameter, Table
 from quad_ident_ros.model.situation import HZ, PER_HOVER, SPEED, UX, UY, UZ
 
@@ -30,6 +30,7 @@ FORM = Form(
     wrench=wrench, needs_reference=True)
 EFFECT = Effect(
     name='inflow', title='inflow and translational lift',
-    forms=(FORM, inflow_momentum.FORM, inflow_curve.FORM, inflow_speed.FORM),
+    forms=(FORM, inflow_momentum.FORM, inflow_curve.FORM, inflow_speed.FORM,
+           inflow_overall.FORM),
     excitation='climbs and descents; fast horizontal flight for the second parameter',
     confused_with=('body_drag', 'thrust_scale'))

@@ -32,6 +32,7 @@ from quad_ident_ros.model.situation import (
 DELAY, LAG = SLICES['actuation_delay'].start, SLICES['motor_lag'].start
 BIAS = SLICES['gyro_bias'].start
 EMPTY = 0.7     # of the full voltage, below which none falls: 3 V of the 4.2 V of a cell
+UNINTERRUPTED = 1000    # samples, some tens of ms, between which Ctrl-C is heard
 NO_TRACKING = np.empty(0), np.empty((0, 0)), np.empty(0)     # in place of Tracking.numbers
 
 
@@ -176,8 +177,9 @@ def close_loop(v: np.ndarray, places: np.ndarray, theta: np.ndarray, heading: np
              places, theta, dt, clock, fall, full, longest, state, speed, inner, energy, u, s,
              rotors, states, commands, speeds, forces, drop)
 
-    if isinstance(controller, Tracking):    # without the interpreter at each sample
-        fly(0, len(errors), controller.numbers)
+    if type(controller) is Tracking:    # without the interpreter at each sample
+        for first in range(0, len(errors), UNINTERRUPTED):
+            fly(first, min(first + UNINTERRUPTED, len(errors)), controller.numbers)
     else:
         for k in range(len(errors)):
             states[k] = state[:, 0]

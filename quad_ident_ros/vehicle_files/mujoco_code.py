@@ -62,6 +62,9 @@ LINES: dict[tuple[str, str], Callable[[Values, int, float], str]] = {
         f'push[:, 2] += {_one(p.get("edgewise_square", 0.0) / n)} * across ** 2\n'
         f'push[:, 2] -= {_one(p.get("climb", 0.0) / n)} * w * u[:, 2]\n'
         f'push[:, 2] -= {_one(p.get("climb_square", 0.0) / n)} * u[:, 2] * np.abs(u[:, 2])'),
+    ('inflow', 'overall'): lambda p, n, r: (
+        f'push[:, 2] += {_one(p.get("translational_overall", 0.0) / n)} * (air[:2] @ air[:2])\n'
+        f'push[:, 2] -= {_one(p.get("axial_overall", 0.0) / n)} * w * air[2]'),
     ('blade_flapping', 'hub_moment'): lambda p, n, r: (
         f'moment += {_one(p["coefficient"] / n)} * np.array([-w @ u[:, 1], w @ u[:, 0], 0.0])'),
     ('blade_flapping', 'damped_hub'): lambda p, n, r: (

@@ -67,7 +67,8 @@ OTHERS = {
     ('inflow', 'momentum'): {'through': 0.5},
     ('inflow', 'curve'): {'climb': 0.1, 'climb_square': 0.05, 'edgewise': 0.1,
                           'edgewise_square': 0.02},
-    ('inflow', 'speed'): {'by_axial_speed': 0.04, 'by_edgewise_speed': 0.02}}
+    ('inflow', 'speed'): {'by_axial_speed': 0.04, 'by_edgewise_speed': 0.02},
+    ('inflow', 'overall'): {'axial_overall': 0.1, 'translational_overall': 0.02}}
 EACH = [pytest.param(name, form, id=f'{name} {form}') for name, form in OTHERS]
 
 
@@ -545,6 +546,23 @@ def test_thrust_falls_with_the_speed_either_way(velocity, lost):
     course = held(BARE, HOVER, 1e-5, 1e-6)
     found = roll(BARE, effects, course, state(velocity=velocity))
     assert (found[-1, 5] - velocity[2]) / 1e-5 == pytest.approx(-lost * GRAVITY, rel=1e-4)
+
+
+@pytest.mark.parametrize(('velocity', 'won'), [((0, 0, 2), -0.2), ((0, 0, -1), 0.1),
+                                               ((3, -4, 0), 0.5)])
+def test_thrust_follows_the_velocity_of_the_whole_vehicle(velocity, won):
+    effects = {'inflow': {'axial_overall': 0.1, 'translational_overall': 0.02}}
+    course = held(BARE, HOVER, 1e-5, 1e-6)
+    found = roll(BARE, effects, course, state(velocity=velocity))
+    assert (found[-1, 5] - velocity[2]) / 1e-5 == pytest.approx(won / BARE.mass, rel=1e-4)
+
+
+@pytest.mark.parametrize(('name', 'slows'), [('axial', True), ('axial_overall', False)])
+def test_only_inflow_of_each_rotor_slows_a_roll(name, slows):
+    course = held(BARE, HOVER, 0.05, 1e-3)
+    found = roll(BARE, {'inflow': {name: 0.1}}, course, state(rate=(2.0, 0.0, 0.0)))
+    assert (found[-1, -3] < 1.999) == slows
+    assert slows or found[-1, -3] == pytest.approx(2.0, rel=1e-6)
 
 
 def test_climbing_costs_the_thrust_of_the_closed_form():

@@ -41,6 +41,7 @@ SETS = ({'rotor_drag': {'coefficient': 0.2}, 'body_drag': {'horizontal': 0.02, '
                               'yz': 0.05}},
         {'blade_flapping': {'hub_coefficient': 0.01, 'rate_damping': 2e-3},
          'rotor_drag': {'coefficient': 0.2},
+         'inflow': {'axial_overall': 0.3, 'translational_overall': 0.01},
          'inertia_mismatch': {'arms_x': 1.3, 'arms_y': 1.2, 'torque': 0.8}})
 IN_NUMBERS = {'rotor_fault', 'inertia_mismatch'}   # of MJCF itself
 VEHICLE = replace(load_vehicle('hummingbird'), linear_drag=(0.1, 0.15, 0.2),
