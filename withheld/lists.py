@@ -27,5 +27,6 @@ NOISES = {
 STRANGERS = {
     DEVELOPMENT: ('periodic_force', 'tether', 'thrust_exponent', 'backlash', 'updraft', 'slosh',
                   'ceiling', 'neighbours', 'compass', 'branches', 'leash', 'recoil',
-                  'keel', 'twisted', 'flywheel', 'carousel', 'sandbag', 'bent', 'turret'),
-    EVALUATION: ('wall', 'whirl', 'stutter', 'roped')}
+                  'keel', 'twisted', 'flywheel', 'carousel', 'sandbag', 'bent', 'turret', 'roped',
+                  'stutter'),
+    EVALUATION: ('wall', 'whirl', 'hoops', 'wand')}

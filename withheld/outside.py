@@ -519,6 +519,47 @@ class Roped(Force):
         return self.tension * (1.0 + self.STIFF * longer) * ((1.0 / far) @ onto)
 
 
+class Hoops(Influence):
+    """
+    Guards around the rotors, which the body has to sweep through the air at each turn.
+
+    They stand in the wake, so that slow turns are braked in proportion, and fast ones with the
+    square. S. F. Hoerner, Fluid-Dynamic Drag, 1965, chapter 3. About the vertical they are thin,
+    and what they drag of the flight is in the file.
+    """
+
+    WAKE, THIN = 2.0, 0.3       # rad/s: of a turn as fast as the wake in hover; of the moment
+
+    def __init__(self, size, weight, radius, hover, rng):
+        """Take the moment, N m, of a turn of 1 rad/s in hover."""
+        self.moment, self.hover = 0.003 * size * weight * radius, hover
+
+    def wrench(self, now):
+        """Return the moment."""
+        wake = float(np.mean(now.speeds)) / self.hover
+        fast = np.hypot(wake, float(np.linalg.norm(now.rate)) / self.WAKE)
+        return np.zeros(3), -self.moment * fast * now.rate * [1.0, 1.0, self.THIN]
+
+
+class Wand(Influence):
+    """
+    Motion capture that was calibrated with another wand than it was told: all lengths are off.
+
+    Places and velocities are, and attitudes and rates are not. P. Merriaux and others, A study of
+    Vicon system positioning performance, Sensors 17(7), 2017, on what such a calibration decides.
+    """
+
+    def __init__(self, size, rng):
+        """Draw whether lengths are too long or too short."""
+        self.off = 0.01 * size * rng.choice([-1.0, 1.0])
+
+    def measured(self, time, state, thrust):
+        """Return the state with lengths that are off."""
+        out = state.copy()
+        out[:6] *= 1.0 + self.off
+        return out
+
+
 # Each with what of the vehicle its size is measured by.
 KINDS = {'periodic_force': (Periodic, 'weight'), 'tether': (Tether, 'weight'),
          'updraft': (Updraft, 'weight'), 'thrust_exponent': (Exponent, 'hover'),
@@ -531,4 +572,5 @@ KINDS = {'periodic_force': (Periodic, 'weight'), 'tether': (Tether, 'weight'),
          'twisted': (Twisted, 'weight', 'radius', 'hover'),
          'flywheel': (Flywheel, 'weight', 'radius'), 'carousel': (Carousel, 'mass'),
          'sandbag': (Sandbag, 'weight'), 'bent': (Bent, 'rotors', 'weight', 'hover'),
-         'turret': (Turret, 'weight', 'radius'), 'roped': (Roped, 'weight')}
+         'turret': (Turret, 'weight', 'radius'), 'roped': (Roped, 'weight'),
+         'hoops': (Hoops, 'weight', 'radius', 'hover'), 'wand': (Wand,)}

@@ -25,6 +25,7 @@ FORCES = [(effect, form) for effect in (
     'rotor_fault', 'blade_flapping') for form in EVALUATION[effect]]
 FLIGHT = flown(PARAMS, HOVER)
 STEP_OF_MOTORS = 0.002
+FLIGHTS = range(4, 20)      # seeds of what differs between the flights of a case
 VEHICLE = load_vehicle('iris')
 # Where the vehicle is at the times of FLIGHT, m.
 WAY = np.column_stack([1.2 * np.sin(0.9 * FLIGHT['time']), 1.2 * np.cos(0.7 * FLIGHT['time']),
@@ -159,11 +160,15 @@ def heave(part):
 
 @pytest.mark.parametrize('form', EVALUATION['mass_offset'])
 def test_a_load_is_no_mass_that_stays(form):
-    part, true = made('mass_offset', form), fresh()
+    part, true, weights, pulls = made('mass_offset', form), fresh(), [], []
     part.alter(true, PARAMS)
-    mass = true['mass'] - PARAMS['mass'] + np.array([part.mass(t) for t in FLIGHT['time']])
-    force, pull = heave(part)
-    weight = mass * pull - force        # what the load takes of the thrust
+    for seed in FLIGHTS:
+        part.begin(np.random.default_rng(seed))
+        mass = true['mass'] - PARAMS['mass'] + np.array([part.mass(t) for t in FLIGHT['time']])
+        force, pull = heave(part)
+        weights.append(mass * pull - force)     # what the load takes of the thrust
+        pulls.append(pull)
+    weight, pull = np.concatenate(weights), np.concatenate(pulls)
     share = pull @ weight / (pull @ pull)
     assert share == pytest.approx(part.parameters['mass'], rel=0.2)
     assert np.linalg.norm(weight - share * pull) > LEAST * np.linalg.norm(weight)
@@ -181,12 +186,12 @@ def test_the_momentum_of_rotors_is_not_that_of_one_inertia(form):
 
 @pytest.mark.parametrize('form', EVALUATION['gyro_bias'])
 def test_a_bias_is_not_constant(form):
-    part, rest = made('gyro_bias', form), np.zeros(3)
-    thrusts = np.mean((FLIGHT['speeds'] / HOVER) ** 2, axis=1)
+    part = made('gyro_bias', form)
+    thrusts, rates = np.mean((FLIGHT['speeds'] / HOVER) ** 2, axis=1), FLIGHT['rate']
     bias = np.array([
-        part.measured(t, np.array([*place, *velocity, *attitude, *rest]), thrust)[10:]
-        for t, place, velocity, attitude, thrust in zip(
-            FLIGHT['time'], WAY, FLIGHT['air'], LEANS.as_quat(), thrusts, strict=True)])
+        part.measured(t, np.array([*place, *velocity, *attitude, *rate]), thrust)[10:] - rate
+        for t, place, velocity, attitude, thrust, rate in zip(
+            FLIGHT['time'], WAY, FLIGHT['air'], LEANS.as_quat(), thrusts, rates, strict=True)])
     assert np.linalg.norm(bias.std(axis=0)) > LEAST * np.linalg.norm(bias.mean(axis=0))
 
 
