@@ -26,6 +26,7 @@ from quad_ident_ros.diagnose.noise import noise_of
 from quad_ident_ros.diagnose.nuisances import as_data as nuisances_as_data
 from quad_ident_ros.diagnose.nuisances import late_states
 from quad_ident_ros.diagnose.provenance import recorded
+from quad_ident_ros.diagnose.ratios import in_fewest
 from quad_ident_ros.diagnose.result import Diagnosis
 from quad_ident_ros.diagnose.rules import RULES, Rules
 from quad_ident_ros.diagnose.select import select
@@ -96,7 +97,7 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
     noise = noise_of(selection.best.estimate, intake.flights, vehicle, rules)
     bench = Bench(intake.flights, (*intake.tracks, intake.held_out), vehicle, selection, noise,
                   rules)
-    judged = judge(bench)
+    bench, judged = in_fewest(bench, judge(bench))
     told(0.8)
     bench, judged = beside_gusts(bench, judged, intake, causes,
                                  lambda share: told(0.8 + 0.1 * share))

@@ -478,13 +478,36 @@ class _Search:
                    > self.rules.shown * fit.errors[fit.columns.index(column)]
                    for cause in effects_in(chosen) if not cause.plain for column in cause.columns)
 
-    def selection(self) -> Selection:
-        """Return the Selection."""
+    def twin(self) -> Fitted | None:
+        """
+        Return the set with mass in place of thrust, or the other way round, that fits as well.
+
+        Only beside another effect that scales the motion: that may make up for the difference.
+        """
         assert self.best is not None
-        fitted = (self.best, *(one for one in self.order() if one is not self.best))
-        joint = joint_of(self.best, self.flights, self.frame, self.vehicle, self.grids,
+        if sum(EFFECTS[name].scale_group for name in _names(self.best)) < 2:
+            return None
+        far = 2.0 * self.quadratic.scatter * self.rules.alike
+        others = (self.judge(key) for key, _ in other_ratios(
+            self.best.chosen, self.all_causes, self.best.estimate.z, self.vehicle)
+            if key in self.tried)
+        return next((one for one in others
+                     if abs(one.estimate.cost - self.best.estimate.cost) < far), None)
+
+    def selection(self) -> Selection:
+        """Return the Selection, and that around its twin, if there is one."""
+        assert self.best is not None
+        twin = self.twin()
+        others = [one for one in self.order() if one is not self.best]
+        return replace(self.around(self.best, others),
+                       twin=None if twin is None else self.around(twin, others))
+
+    def around(self, best: Fitted, fitted: Sequence[Fitted]) -> Selection:
+        """Return the Selection of some Fitted sets in which this one is the best."""
+        fitted = (best, *(one for one in fitted if one is not best))
+        joint = joint_of(best, self.flights, self.frame, self.vehicle, self.grids,
                          self.quadratic.scatter, self.rules)
-        force, moment = (float(grid[k]) for grid, k in zip(self.grids, self.best.sizes,
+        force, moment = (float(grid[k]) for grid, k in zip(self.grids, best.sizes,
                                                            strict=True))
         return Selection(fitted[0], fitted,
                          posteriors(fitted, self.ranked, self.all_causes, set(self.tried),

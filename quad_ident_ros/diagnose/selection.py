@@ -24,7 +24,8 @@ class Selection:
     around the best, with all candidates free; noise: per flight (12,); joint: the Joint of the
     columns of the best; sizes: force (N) and moment (N m) of its discrepancy; slow (6,): the force
     and moment that nothing explains, by which autocorrelated errors counted less in the fits, or
-    None.
+    None; twin: the Selection with thrust in place of mass, or mass in place of thrust, beside
+    other effects that scale the motion, where flights fit both alike, or None.
     """
 
     best: Fitted
@@ -36,6 +37,7 @@ class Selection:
     joint: Joint
     sizes: tuple[float, float]
     slow: np.ndarray | None = None
+    twin: 'Selection | None' = None
 
     @property
     def errors(self) -> np.ndarray:
