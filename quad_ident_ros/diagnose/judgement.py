@@ -297,11 +297,11 @@ def closes_half(after: dict, before: dict, noise: dict, rules: Rules) -> bool:
     Return whether a model closes half of the gap of some group of outputs.
 
     What does is named, though each of its effects may be less probable than not: `unknown` in its
-    place would say less than the flights do. A gap that hardly exceeds the noise does not count.
+    place would say less than the flights do. A gap within the tolerance does not count: nothing
+    would be unknown.
     """
-    return any(share >= rules.half
-               and beyond(before[name], noise[name]) >= rules.least(name, noise[name])
-               for name, share in lost_shares(after, before, before, noise, rules).items())
+    shares = lost_shares(after, before, before, noise, rules)
+    return any(shares[name] >= rules.half for name in remaining(before, noise, rules))
 
 
 def _fewest(bench: Bench, model: Model, before: dict, noise: dict, present: dict) -> Model:

@@ -476,7 +476,8 @@ def test_what_closes_half_of_a_gap_in_one_group_is_named_in_place_of_unknown(aft
     assert closes_half(of(velocity=after), before, NOISE, RULES) is expected
 
 
-def test_half_of_a_gap_that_hardly_exceeds_the_noise_does_not_count():
+def test_half_of_a_gap_within_the_tolerance_does_not_count():
     noise = NOISE | {'velocity': 0.12}
-    for before, expected in ((0.1, False), (0.121, False), (0.15, True)):
+    beyond_it = np.hypot(0.12, RULES.tolerance('velocity', 0.12))
+    for before, expected in ((0.1, False), (0.99 * beyond_it, False), (1.01 * beyond_it, True)):
         assert closes_half(of(velocity=0.06), of(velocity=before), noise, RULES) is expected
