@@ -16,8 +16,8 @@ from quad_ident_ros.vehicle_files.source import Source
 from quad_ident_ros.vehicle_files.speed_unit import counted
 from quad_ident_ros.vehicle_files.ways import forms_of
 
-PER_SPEED = ('coefficient', 'hub_coefficient', 'axial', 'climb', 'edgewise', 'x_by_speed',
-             'y_by_speed', 'z_by_speed')
+PER_SPEED = ('coefficient', 'hub_coefficient', 'axial', 'axial_overall', 'climb', 'edgewise',
+             'x_by_speed', 'y_by_speed', 'z_by_speed')
 """Parameters that go with the speed of the rotors over that at hover."""
 
 
