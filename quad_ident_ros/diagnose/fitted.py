@@ -103,6 +103,12 @@ def prior_deviations(vehicle: Vehicle, rules: Rules) -> np.ndarray:
     return wide
 
 
+def prior_distance(fit: Estimate, vehicle: Vehicle, rules: Rules) -> float:
+    """Return what the prior takes off the log evidence of an Estimate for its effects."""
+    away = (fit.z - nominal(vehicle))[fit.columns]
+    return 0.5 * float(np.sum((away / prior_deviations(vehicle, rules)[fit.columns]) ** 2))
+
+
 def size_grids(vehicle: Vehicle, noise: list, rules: Rules) -> tuple:
     """
     Return rising sizes of an unexplained force (N) and moment (N m), 0 first.

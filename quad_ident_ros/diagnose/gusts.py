@@ -18,6 +18,7 @@ from quad_ident_ros.diagnose.intake import Intake
 from quad_ident_ros.diagnose.judgement import judge, Judgement
 from quad_ident_ros.diagnose.measure import TRANSLATION
 from quad_ident_ros.diagnose.noise import noise_of
+from quad_ident_ros.diagnose.ratios import in_fewest
 from quad_ident_ros.diagnose.select import select
 from quad_ident_ros.effects.registry import GUSTS
 from quad_ident_ros.greybox.flights import inertial
@@ -38,4 +39,4 @@ def beside_gusts(bench: Bench, judged: Judgement, intake: Intake, causes: tuple[
         return bench, judged
     beside = replace(bench, selection=selection, noise=noise_of(
         selection.best.estimate, intake.flights, bench.vehicle, bench.rules))
-    return beside, judge(beside)
+    return in_fewest(beside, judge(beside))

@@ -16,6 +16,7 @@ from quad_ident_ros.diagnose.fitted import (
     Fitted,
     fitted_of,
     out_of_bounds,
+    prior_distance,
     refitted,
     size_grids,
     within_bounds,
@@ -487,30 +488,37 @@ class _Search:
         assert self.best is not None
         if sum(EFFECTS[name].scale_group for name in _names(self.best)) < 2:
             return None
-        far = 2.0 * self.quadratic.scatter * self.rules.alike
+        best, far = self.best.estimate, self.rules.alike
         others = (self.judge(key) for key, _ in other_ratios(
-            self.best.chosen, self.all_causes, self.best.estimate.z, self.vehicle)
-            if key in self.tried)
-        return next((one for one in others
-                     if abs(one.estimate.cost - self.best.estimate.cost) < far), None)
+            self.best.chosen, self.all_causes, best.z, self.vehicle) if key in self.tried)
+        return next((
+            one for one in others
+            if abs(one.estimate.cost - best.cost) < 2.0 * self.quadratic.scatter * far
+            and prior_distance(one.estimate, self.vehicle, self.rules)
+            < prior_distance(best, self.vehicle, self.rules) + far), None)
 
     def selection(self) -> Selection:
         """Return the Selection, and that around its twin, if there is one."""
         assert self.best is not None
-        twin = self.twin()
-        others = [one for one in self.order() if one is not self.best]
-        return replace(self.around(self.best, others),
-                       twin=None if twin is None else self.around(twin, others))
+        selection, twin = self.around(self.best, self.order(), self.ranked), self.twin()
+        if twin is None:
+            return selection
+        # What the twin does without explains the flights by more effects: it is no rival.
+        gone = _names(self.best) - _names(twin)
+        return replace(selection, twin=self.around(
+            twin, [one for one in self.order() if not gone & _names(one)],
+            [one for one in self.ranked
+             if not gone & {cause.effect for cause in effects_in(one[1])}]))
 
-    def around(self, best: Fitted, fitted: Sequence[Fitted]) -> Selection:
-        """Return the Selection of some Fitted sets in which this one is the best."""
-        fitted = (best, *(one for one in fitted if one is not best))
+    def around(self, best: Fitted, sets: Sequence[Fitted], ranked: list) -> Selection:
+        """Return the Selection with this set as the best of some that are fitted, or ranked."""
+        fitted = (best, *(one for one in sets if one is not best))
         joint = joint_of(best, self.flights, self.frame, self.vehicle, self.grids,
                          self.quadratic.scatter, self.rules)
         force, moment = (float(grid[k]) for grid, k in zip(self.grids, best.sizes,
                                                            strict=True))
         return Selection(fitted[0], fitted,
-                         posteriors(fitted, self.ranked, self.all_causes, set(self.tried),
+                         posteriors(fitted, ranked, self.all_causes, set(self.tried),
                                     self.rules),
                          self.quadratic, self.rows, self.noise, joint, (force, moment), self.slow)
 

@@ -25,7 +25,8 @@ class Selection:
     columns of the best; sizes: force (N) and moment (N m) of its discrepancy; slow (6,): the force
     and moment that nothing explains, by which autocorrelated errors counted less in the fits, or
     None; twin: the Selection with thrust in place of mass, or mass in place of thrust, beside
-    other effects that scale the motion, where flights fit both alike, or None.
+    other effects that scale the motion, where flights fit both alike, or None; its quadratic is
+    around the same point.
     """
 
     best: Fitted
