@@ -26,7 +26,7 @@ FORM = Form(
                           'won per square of the velocity of the vehicle across body z',
                           excited_by='horizontal')),
     source='thrust - axial_overall (speed / sum of hover speeds) vz + translational_overall '
-           '(vx^2 + vy^2) / rotors at each rotor, v of the centre of mass: the inflow takes time '
-           'to build up and follows the motion of the vehicle, but not that of rotors which go '
-           'up and down as it turns; Pitt, Peters, Vertica 5(1), 1981',
+           '(vx^2 + vy^2) / rotors at each rotor, v of the centre of mass: an approximation where '
+           'thrust follows the velocity late, so that rotors which go up and down as the vehicle '
+           'turns hardly feel it; that inflow takes time: Pitt, Peters, Vertica 5(1), 1981',
     wrench=wrench, needs_reference=True)

@@ -32,7 +32,7 @@ from quad_ident_ros.model.situation import (
 DELAY, LAG = SLICES['actuation_delay'].start, SLICES['motor_lag'].start
 BIAS = SLICES['gyro_bias'].start
 EMPTY = 0.7     # of the full voltage, below which none falls: 3 V of the 4.2 V of a cell
-UNINTERRUPTED = 1000    # samples, some tens of ms, between which Ctrl-C is heard
+UNINTERRUPTED = 1000    # samples, well below a second, between which Ctrl-C is heard
 NO_TRACKING = np.empty(0), np.empty((0, 0)), np.empty(0)     # in place of Tracking.numbers
 
 
