@@ -4,11 +4,10 @@
 
 import numpy as np
 
-from withheld.actuators import Line
-from withheld.forms.motors import TIME
+from withheld.forms.motors import Jitter
 
 
-class LongTailed(Line):
+class LongTailed(Jitter):
     """
     Commands from a computer on the ground over Wi-Fi: mostly soon, and some very late.
 
@@ -19,15 +18,6 @@ class LongTailed(Line):
     """
 
     LEAST, SPREAD = 0.45, 0.9       # of the mean delay; of the logarithm of the rest
-
-    def __init__(self, size, params, rng):
-        """Set the mean delay."""
-        super().__init__(TIME * size)
-        self.parameters = {'mean': TIME * size}
-
-    def begin(self, rng):
-        """Take the flight's own draws."""
-        self._rng = rng
 
     def waits(self, time):
         """Return the delay of one command."""

@@ -71,8 +71,9 @@ def test_what_takes_as_many_effects_stays():
 
 
 @pytest.mark.slow
-def test_a_ratio_by_itself_has_no_twin():
+def test_a_thrust_by_itself_stays():
     bench, judged = found_beside({'thrust_scale': {'factor': 1.05}}, 'thrust_scale')
+    assert bench.selection.twin is not None
     assert names(judged) == {'thrust_scale'}
     assert in_fewest(bench, judged) == (bench, judged)
 

@@ -109,15 +109,28 @@ class FromOutside:
         self.tracking.control(*asked)
 
 
+class Derived(Tracking):
+    """One that is made from ours: what it overrides is asked, too."""
+
+    def __init__(self, vehicle):
+        super().__init__(vehicle)
+        self.calls = 0
+
+    def control(self, *asked):
+        self.calls += 1
+        super().control(*asked)
+
+
+@pytest.mark.parametrize('kind', [FromOutside, Derived])
 @pytest.mark.parametrize('effects', (
     {}, {'actuation_delay': {'delay': 0.025}, 'motor_lag': {'time_constant': 0.03}}), ids=str)
-def test_a_controller_from_outside_flies_as_one_that_is_compiled_with_the_loop(effects):
-    *places, yaw, yaw_rate = plan('lissajous', PAPER, 6.0, 0)(np.arange(601) / 100.0)
+def test_a_controller_from_outside_flies_as_one_that_is_compiled_with_the_loop(effects, kind):
+    *places, yaw, yaw_rate = plan('lissajous', PAPER, 15.0, 0)(np.arange(1501) / 100.0)
     wanted = np.concatenate([*places, yaw[:, None], yaw_rate[:, None]], axis=1)
     errors = 1e-3 * np.random.default_rng(0).standard_normal((len(wanted), 12))
     # What changes in flight begins another part, to which the controller brings its memory.
     parts = [(3.0, vector(effects | {'thrust_scale': {'factor': 0.9}}, PAPER))]
-    outside = FromOutside(PAPER)
+    outside = kind(PAPER)
     one, other = (flown(PAPER, vector(effects, PAPER), wanted, errors, 100.0, controller, parts)
                   for controller in (Tracking(PAPER), outside))
     assert outside.calls == len(wanted) + SETTLING * 100.0     # with those of the hover before
