@@ -343,7 +343,7 @@ def test_full_throttle_is_right_and_slow_rotors_are_off_by_more(seed):
     assert np.all(np.diff(np.abs(gains), axis=0) > 0.0)
     assert np.all(np.sign(gains[1:]) == -np.sign(part.zones))
     # A straight line from where each begins: the root of thrust over that of hover.
-    roots = [np.sqrt(1.0 + one) * turn for one, turn in zip(gains[1:], (1.2, 1.0, 0.7),
-                                                           strict=True)]
+    turns = (1.2, 1.0, 0.7)
+    roots = [np.sqrt(1.0 + one) * turn for one, turn in zip(gains[1:], turns, strict=True)]
     assert (roots[0] - roots[1]) / 0.2 == pytest.approx((roots[1] - roots[2]) / 0.3)
     assert np.ptp(part.zones) > 0.0
