@@ -3,19 +3,19 @@
 """Angular momentum of the rotors."""
 
 from quad_ident_ros.compiled import compiled
+from quad_ident_ros.effects import rotor_gyro_by_spin
 from quad_ident_ros.effects.base import Effect, Form, Parameter, Table
-from quad_ident_ros.model.situation import MX, MY, MZ, SPIN_UP, SPINS, WX, WY
+from quad_ident_ros.model.situation import MX, MY, SPINS, WX, WY
 
 
 @compiled(fused=True, inlined=True)
 def wrench(p: Table, k: int, s: Table, _: Table) -> None:
-    """Add the moment of turning the rotors' axes, and of speeding them up."""
+    """Add the moment of turning the rotors' axes; that of speeding them up comes with speeds."""
     for i in range(s.shape[1]):
         # A rotor turns against the reaction torque that its spin names.
         momentum = p[k, i] * s[SPINS, i]
         s[MX, i] += momentum * s[WY, i]
         s[MY, i] -= momentum * s[WX, i]
-        s[MZ, i] += p[k, i] * s[SPIN_UP, i]
 
 
 FORM = Form(
@@ -26,6 +26,7 @@ FORM = Form(
            'the paper with the sign of the errata',
     wrench=wrench)
 EFFECT = Effect(
-    name='rotor_gyro', title='angular momentum of the rotors', forms=(FORM,),
+    name='rotor_gyro', title='angular momentum of the rotors',
+    forms=(FORM, rotor_gyro_by_spin.FORM),
     excitation='roll and pitch while the rotors of the two spins turn unequally fast; yaw steps',
     confused_with=('inertia_mismatch',))

@@ -134,7 +134,7 @@ def _fly(first: int, stop: int, gains: np.ndarray, mixer: np.ndarray, memory: np
                     follow(end, inner, commands[before if piece == 0 else max(k - whole, 0)],
                            h[0], up, down, slew, mean_lag, inner_lag, added)
                     command[:, 0], extra[:, :, 0] = end, added
-                take_up(state, speed, command, h, acting, places, s, rotors, work)
+                take_up(state, speed, command, h, acting, s, rotors, work)
                 step(state, h, u, v, places, theta, speed, command, extra, lag, s, rotors, work)
                 if clock == 0.0:
                     s[TIME, 0] = 0.0

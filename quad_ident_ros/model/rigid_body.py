@@ -19,6 +19,7 @@ from quad_ident_ros.effects.registry import (
     GUST,
     GUSTS,
     mark,
+    PLACES,
     ROWS_OF,
     TABLE,
     THRUST,
@@ -86,8 +87,10 @@ from quad_ident_ros.model.situation import (
     RY,
     RZ,
     SPEED,
+    SPIN,
     SPIN_UP,
     SPINS,
+    SPUN,
     STAGE,
     STEADY_X,
     TIME,
@@ -118,6 +121,9 @@ STATE = 13      # position, velocity (world), quaternion (body to world), rate (
 # smoothed commands after these.
 INPUT = 10
 GUSTY = ROWS_OF[GUSTS.name, GUSTS.forms[0].name]
+# Parameters of a rotor's inertia about its axis: of all alike; of those of spin 1, and of -1.
+INERTIA = PLACES['rotor_gyro', 'momentum'].start
+INERTIA_BY_SPIN = PLACES['rotor_gyro', 'momentum_by_spin'].start
 CONSTANTS = 19
 ROUNDING = 2.0 ** -52   # of a moment of inertia: smaller products count as 0
 
@@ -176,6 +182,11 @@ def prepare(v: np.ndarray, places: np.ndarray, theta: np.ndarray, s: np.ndarray,
             rotors[j, RX, i] = s[ARMS_X, i] * places[j, 0] - s[COM_X, i]
             rotors[j, RY, i] = s[ARMS_Y, i] * places[j, 1] - s[COM_Y, i]
             rotors[j, RZ, i] = places[j, 2] - s[COM_Z, i]
+        spin = places[j, 3]
+        apart = INERTIA_BY_SPIN if spin > 0.0 else INERTIA_BY_SPIN + 1
+        for i in range(s.shape[1]):
+            rotors[j, SPIN, i] = spin
+            rotors[j, SPUN, i] = spin * (theta[INERTIA, i] + theta[apart, i])
 
 
 @compiled(fused=True)
@@ -330,7 +341,7 @@ def derivative(x: np.ndarray, u: np.ndarray, v: np.ndarray, places: np.ndarray,
         wx, wy, wz = s[WX, i], s[WY, i], s[WZ, i]
         s[MX, i] = u[1, i] - v[11, i] * wx * abs(wx)
         s[MY, i] = u[2, i] - v[12, i] * wy * abs(wy)
-        s[MZ, i] = u[3, i] - v[13, i] * wz * abs(wz)
+        s[MZ, i] = u[3, i] - v[13, i] * wz * abs(wz) + s[SPIN_UP, i]
         s[SPINS, i] = u[4, i]
     wrench(v, places, theta, s, rotors)
     if v.shape[0] > CONSTANTS:
@@ -386,7 +397,7 @@ def derivatives(v: np.ndarray, places: np.ndarray, theta: np.ndarray, t: np.ndar
         s[VOLT_SHARE, 0] = inputs[n, 6]
         for j in range(places.shape[0]):
             rotors[j, SPEED, 0] = speeds[n, j]
-            s[SPIN_UP, 0] += places[j, 3] * accelerations[n, j]
+            s[SPIN_UP, 0] += rotors[j, SPUN, 0] * accelerations[n, j]
         derivative(x, u, v, places, parameters, s, rotors, dx)
         for k in range(STATE):
             out[n, k] = dx[k, 0]

@@ -23,6 +23,7 @@ from quad_ident_ros.model.situation import (
     ROTOR_ROWS,
     SPEED,
     SPIN_UP,
+    SPUN,
     STAGE,
     TIME,
     VOLT_DROP,
@@ -30,30 +31,34 @@ from quad_ident_ros.model.situation import (
 )
 
 LAG = SLICES['motor_lag'].start
-GYRO, GYRO_ROW = SLICES['rotor_gyro'].start, ROWS_OF['rotor_gyro', 'momentum']
-# Rows of work[3] after the shares of begin, middle and end: one over the lag, and what of the rate
-# of change of the rotors' spin no lag gives.
+# Where s says whether rotors have momentum, alike or by their spin.
+ALIKE, BY_SPIN = (ROWS_OF['rotor_gyro', form] for form in ('momentum', 'momentum_by_spin'))
+# Rows of work[3] after the shares of begin, middle and end: one over the lag, and what of the
+# moment by which the rotors' speeds change no lag gives.
 RATE, CHANGE = 3, 4
 
 
 @compiled(fused=True, inlined=True)
 def _set_speeds(share: np.ndarray, speed: np.ndarray, command: np.ndarray, added: np.ndarray,
-                places: np.ndarray, period_rate: np.ndarray, change: np.ndarray, s: np.ndarray,
-                rotors: np.ndarray) -> None:
-    """Set the speeds that lie between `speed` and `command`; share (LANES,) is what remains."""
+                period_rate: np.ndarray, change: np.ndarray, s: np.ndarray, rotors: np.ndarray
+                ) -> None:
+    """
+    Set the speeds that lie between `speed` and `command`, and the moment by which they change.
+
+    share (LANES,) of the gap remains.
+    """
     for i in range(s.shape[1]):
         s[SPIN_UP, i] = change[i]
     for j in range(rotors.shape[0]):
         for i in range(s.shape[1]):
             gap = (speed[j, i] - command[j, i]) * share[i]
             rotors[j, SPEED, i] = command[j, i] + gap + added[j, i]
-            s[SPIN_UP, i] -= places[j, 3] * gap * period_rate[i]
+            s[SPIN_UP, i] -= rotors[j, SPUN, i] * gap * period_rate[i]
 
 
 @compiled(fused=True, inlined=True)
 def take_up(x: np.ndarray, speed: np.ndarray, command: np.ndarray, span: np.ndarray,
-            theta: np.ndarray, places: np.ndarray, s: np.ndarray, rotors: np.ndarray,
-            work: np.ndarray) -> None:
+            theta: np.ndarray, s: np.ndarray, rotors: np.ndarray, work: np.ndarray) -> None:
     """
     Hand the momentum of rotors that change their speed without a lag of their own to the body.
 
@@ -63,22 +68,21 @@ def take_up(x: np.ndarray, speed: np.ndarray, command: np.ndarray, span: np.ndar
     change = work[3, CHANGE]
     for i in range(s.shape[1]):
         change[i] = 0.0
-    if s[GYRO_ROW, 0] != 0.0:
+    if s[ALIKE, 0] != 0.0 or s[BY_SPIN, 0] != 0.0:
         for j in range(rotors.shape[0]):
             for i in range(s.shape[1]):
                 if theta[LAG, i] == 0.0:
-                    change[i] += places[j, 3] * (command[j, i] - speed[j, i])
+                    change[i] += rotors[j, SPUN, i] * (command[j, i] - speed[j, i])
         for i in range(s.shape[1]):
             if is_followed(theta[:, i]):
                 change[i] /= span[i]
             else:
-                moment = theta[GYRO, i] * change[i]
                 if s[FULL, 0] != 0.0:
-                    x[10, i] += moment * s[PER_XZ, i]
-                    x[11, i] += moment * s[PER_YZ, i]
-                    x[12, i] += moment * s[PER_ZZ, i]
+                    x[10, i] += change[i] * s[PER_XZ, i]
+                    x[11, i] += change[i] * s[PER_YZ, i]
+                    x[12, i] += change[i] * s[PER_ZZ, i]
                 else:
-                    x[12, i] += moment * s[PER_IZ, i]
+                    x[12, i] += change[i] * s[PER_IZ, i]
                 change[i] = 0.0
 
 
@@ -108,8 +112,7 @@ def step(x: np.ndarray, h: np.ndarray, u: np.ndarray, v: np.ndarray, places: np.
             for i in range(s.shape[1]):
                 s[STAGE, i] = 0.5 * place
                 s[TIME, i] += 0.5 * h[i] if stage else 0.0
-            _set_speeds(work[3, place], speed, command, added[place], places, rate, change, s,
-                        rotors)
+            _set_speeds(work[3, place], speed, command, added[place], rate, change, s, rotors)
         derivative(y, u, v, places, theta, s, rotors, k)
         weight = 2.0 if place == 1 else 1.0
         ahead = 1.0 if stage == 2 else 0.5
@@ -198,7 +201,7 @@ def _kernel(lanes: int) -> Callable[..., None]:
                         lead = guide_of[which[b]]
                         for n in range(2 * GUIDE):
                             s[GUIDE_BEGIN + n, i] = guides[lead, row + n // GUIDE, n % GUIDE]
-                take_up(x, speed, command, span, theta, places, s, rotors, work)
+                take_up(x, speed, command, span, theta, s, rotors, work)
                 for _ in range(substeps):
                     step(x, h, u, v, places, theta, speed, command, extra, theta[LAG], s, rotors,
                          work)

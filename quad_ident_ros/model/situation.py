@@ -15,7 +15,7 @@ A lane is one rollout of the batch. `s` (ROWS, LANES) holds the vehicle, the row
  FX, FY, FZ, MX, MY, MZ,
  # Velocity of the vehicle against the air, body; wind, world, and what of it is steady.
  AX, AY, AZ, WIND_X, WIND_Y, WIND_Z, STEADY_X, STEADY_Y, STEADY_Z,
- # Sums over the rotors: spin * speed, and its rate of change.
+ # Sums over the rotors: spin * speed, and the moment about body z by which their speeds change.
  SPINS, SPIN_UP,
  # Rate of the body with which its rotors meet the air: the state's, or a record's.
  TX, TY, TZ,
@@ -39,5 +39,7 @@ GUIDE_BEGIN, GUIDE_END = 70, 70 + GUIDE
 ROWS = GUIDE_END + GUIDE
 
 # A rotor: speed; its velocity against the air, body; factors on its thrust and on its reaction
-# torque; its force, body; its place from the centre of mass, body; its height over ground.
-(SPEED, UX, UY, UZ, GAIN, REACTION, HX, HY, HZ, RX, RY, RZ, HEIGHT, ROTOR_ROWS) = range(14)
+# torque; its force, body; its place from the centre of mass, body; its height over ground; its
+# spin, and its inertia about its axis times that.
+(SPEED, UX, UY, UZ, GAIN, REACTION, HX, HY, HZ, RX, RY, RZ, HEIGHT, SPIN, SPUN,
+ ROTOR_ROWS) = range(16)

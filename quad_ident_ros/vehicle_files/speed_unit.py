@@ -12,6 +12,7 @@ from dataclasses import replace
 import math
 from typing import Any
 
+from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.model.motors import Motors, motors_from
 from quad_ident_ros.model.vehicle import Vehicle
 from quad_ident_ros.vehicle_files.reading import Draft
@@ -19,7 +20,8 @@ from quad_ident_ros.vehicle_files.reading import Draft
 PER_SPEED = {'thrust_coefficient': -2, 'torque_coefficient': -2, 'rotor_inertia': -1,
              'speed_min': 1, 'speed_max': 1}
 """Powers of a unit of speed by which constants of a vehicle change."""
-_IN_EFFECTS = {('rotor_gyro', 'rotor_inertia'), ('motor_lag', 'slew')}
+_IN_EFFECTS = {('motor_lag', 'slew'), *(
+    ('rotor_gyro', parameter.name) for parameter in EFFECTS['rotor_gyro'].parameters)}
 """Parameters of effects that go with the reciprocal of the unit."""
 
 

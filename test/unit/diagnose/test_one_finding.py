@@ -50,3 +50,19 @@ def test_a_log_without_all_commands_does_not_tell_thrust_from_mass(every, apart)
     same = [row['effects'] for row in found.one_finding if row['effect'] == found.verdict[0]]
     assert found.verdict[0] in {'thrust_scale', 'mass_offset'}
     assert (['mass_offset', 'thrust_scale'] in same) != apart
+
+
+@pytest.mark.slow
+def test_momentum_that_remains_in_hover_may_be_that_of_a_wheel_on_board():
+    found = diagnosed({'rotor_gyro': {'inertia_clockwise': 1.5e-5,
+                                      'inertia_counterclockwise': 1e-5}})
+    assert found.verdict == ('rotor_gyro',) and found.ranking[0].form == 'momentum_by_spin'
+    [line] = one_finding_lines(found)
+    assert 'a wheel or a scanner' in line and 'a flight with that body at rest' in line
+
+
+@pytest.mark.slow
+def test_rotors_that_are_alike_are_told_as_such():
+    found = diagnosed({'rotor_gyro': {'rotor_inertia': 1.5e-5}})
+    assert found.verdict == ('rotor_gyro',) and found.ranking[0].form == 'momentum'
+    assert not found.one_finding

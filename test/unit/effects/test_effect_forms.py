@@ -64,6 +64,8 @@ OTHERS = {
     ('blade_flapping', 'drag_centre'): {'arm': 0.05},
     ('blade_flapping', 'drag_point'): {'arm_x': 0.03, 'arm_y': -0.02, 'arm_z': 0.05},
     ('rotor_fault', 'thrust_and_torque'): {'loss_both_2': 0.1},
+    ('rotor_gyro', 'momentum_by_spin'): {'inertia_clockwise': 1e-4,
+                                         'inertia_counterclockwise': 5e-5},
     ('inflow', 'momentum'): {'through': 0.5},
     ('inflow', 'curve'): {'climb': 0.1, 'climb_square': 0.05, 'edgewise': 0.1,
                           'edgewise_square': 0.02},
@@ -249,16 +251,35 @@ FREE = replace(load_vehicle('hummingbird'), torque_coefficient=1e-30)
 SPINS = np.array([rotor.spin for rotor in FREE.rotors])
 TURNING = hover_speed(FREE)
 GYRO = {'rotor_gyro': {'rotor_inertia': 5e-5}}
+ALIKE = {'rotor_gyro': {'inertia_clockwise': 5e-5, 'inertia_counterclockwise': 5e-5}}
 
 
-def test_rotors_that_jump_hand_their_momentum_to_the_body():
+@pytest.mark.parametrize('lag', [{}, {'time_constant': 0.05}, {'rise': 0.02, 'fall': 0.06}],
+                         ids=lambda lag: '_'.join(lag) or 'jump')
+def test_rotors_of_both_spins_that_are_alike_are_rotors_that_are_alike(lag):
+    course = steps(VEHICLE)
+    one, other, none = (roll(VEHICLE, {**each, 'motor_lag': lag}, course, START)
+                        for each in (GYRO, ALIKE, {}))
+    assert np.abs(one - other).max() < 1e-11 < 1e-3 < np.abs(one - none).max()
+
+
+def test_momenta_of_both_forms_add_up():
+    half = {'inertia_clockwise': 2e-5, 'inertia_counterclockwise': 2e-5}
+    course = steps(VEHICLE)
+    both, one = (roll(VEHICLE, each, course, START) for each in (
+        {'rotor_gyro': {'rotor_inertia': 3e-5, **half}}, GYRO))
+    assert np.abs(both - one).max() < 1e-11
+
+
+@pytest.mark.parametrize('rotors', [GYRO, ALIKE], ids=['momentum', 'momentum_by_spin'])
+def test_rotors_that_jump_hand_their_momentum_to_the_body(rotors):
     course = held(FREE, TURNING * (1.0 + 0.1 * SPINS), seconds=0.2)
     course.commands[:5] = TURNING
-    rate = roll(FREE, GYRO, course, state())[:, 12]
+    rate = roll(FREE, rotors, course, state())[:, 12]
     step = 5e-5 * np.sum(SPINS * 0.1 * TURNING * SPINS) / FREE.inertia[2]
     # Row 5 is that of the command, before it acts; a rollout from there has the jump before it.
     assert rate == pytest.approx(np.where(np.arange(21) > 5, step, 0.0), abs=1e-12)
-    later = predict(FREE, vector(GYRO, FREE), course, state()[None], [5], 3)[0, :, 12]
+    later = predict(FREE, vector(rotors, FREE), course, state()[None], [5], 3)[0, :, 12]
     assert later == pytest.approx([0.0, step, step, step], abs=1e-12)
 
 

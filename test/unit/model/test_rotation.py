@@ -21,33 +21,43 @@ WEIGHT = MASS * GRAVITY
 HOVER = hover_speed(BARE)
 
 
-def test_rotors_of_one_sense_have_the_body_precess():
-    # Axisymmetric, no torque: w turns about the axis at J sum(spin speed) / I.
-    inertia, speed, rotor = 0.03, 400.0, 2e-4
+@pytest.mark.parametrize(('rotors', 'spins', 'inertias'), [
+    ({'rotor_inertia': 2e-4}, (1, 1, 1, 1), 8e-4),
+    ({'inertia_clockwise': 5e-4, 'inertia_counterclockwise': 1e-4}, (1, 1, -1, -1), 8e-4),
+    ({'inertia_clockwise': 1e-4, 'inertia_counterclockwise': 5e-4}, (1, 1, -1, -1), -8e-4)],
+    ids=['one_sense', 'clockwise', 'counterclockwise'])
+def test_momentum_that_remains_has_the_body_precess(rotors, spins, inertias):
+    # Axisymmetric, no torque: w turns about the axis at sum(spin J) speed / I.
+    inertia, speed = 0.03, 400.0
     vehicle = replace(BARE, inertia=(inertia, inertia, 0.05), thrust_coefficient=1e-30,
-                      torque_coefficient=1e-30,
-                      rotors=tuple(replace(each, spin=1) for each in BARE.rotors))
+                      torque_coefficient=1e-30, rotors=tuple(
+                          replace(each, spin=spin)
+                          for each, spin in zip(BARE.rotors, spins, strict=True)))
     course = held(vehicle, speed, seconds=2.0, period=0.001)
-    found = roll(vehicle, {'rotor_gyro': {'rotor_inertia': rotor}}, course, state(rate=(2, 0, 0)))
-    turned = rotor * 4 * speed / inertia * course.t
-    assert turned[-1] > 6 * np.pi
+    found = roll(vehicle, {'rotor_gyro': rotors}, course, state(rate=(2, 0, 0)))
+    turned = inertias * speed / inertia * course.t
+    assert abs(turned[-1]) > 6 * np.pi
     exact = 2 * np.stack([np.cos(turned), -np.sin(turned), np.zeros_like(turned)], axis=1)
     assert np.abs(found[:, 10:] - exact).max() < 1e-6
 
 
 @pytest.mark.parametrize('lag', [0.05, 1e-4])
-def test_speeding_rotors_up_keeps_the_angular_momentum_about_their_axes(lag):
+@pytest.mark.parametrize('rotors', [
+    {'rotor_inertia': 3e-5}, {'inertia_clockwise': 5e-5, 'inertia_counterclockwise': 2e-5}], ids=[
+    'alike', 'by_spin'])
+def test_speeding_rotors_up_keeps_the_angular_momentum_about_their_axes(rotors, lag):
     # Two rotors of each sense, in a square: the vehicle turns about its axis alone.
     vehicle = replace(load_vehicle('hummingbird'), torque_coefficient=1e-30)
     hover = hover_speed(vehicle)
     faster = hover * np.where([rotor.spin > 0 for rotor in vehicle.rotors], 1.1, 0.9)
     course = held(vehicle, faster)
     course.commands[0] = hover
-    effects = {'rotor_gyro': {'rotor_inertia': 3e-5}, 'motor_lag': {'time_constant': lag}}
+    effects = {'rotor_gyro': rotors, 'motor_lag': {'time_constant': lag}}
     found = roll(vehicle, effects, course, state())
     _, speeds, _ = acted(course.t, course.commands, lag=lag)
     # A rotor turns against the reaction torque that its spin names.
-    momentum = -3e-5 * speeds @ [rotor.spin for rotor in vehicle.rotors]
+    by_spin = dict(zip((1, -1), list(rotors.values()) * 2, strict=False))
+    momentum = -speeds @ [rotor.spin * by_spin[rotor.spin] for rotor in vehicle.rotors]
     total = vehicle.inertia[2] * found[:, 12] + momentum
     assert np.abs(total - total[0]).max() < 1e-12 * np.abs(momentum).max() + 1e-15
     assert found[-1, 12] > 1e-3
