@@ -10,7 +10,7 @@ from quad_ident_ros.model.situation import MX, MY, SPINS, WX, WY
 
 @compiled(fused=True, inlined=True)
 def wrench(p: Table, k: int, s: Table, _: Table) -> None:
-    """Add the moment of turning the rotors' axes; that of speeding them up comes with speeds."""
+    """Add the moment of turning the rotors' axes; rigid_body adds that of speeding them up."""
     for i in range(s.shape[1]):
         # A rotor turns against the reaction torque that its spin names.
         momentum = p[k, i] * s[SPINS, i]
@@ -28,5 +28,5 @@ FORM = Form(
 EFFECT = Effect(
     name='rotor_gyro', title='angular momentum of the rotors',
     forms=(FORM, rotor_gyro_by_spin.FORM),
-    excitation='roll and pitch while the rotors of the two spins turn unequally fast; yaw steps',
+    excitation='roll and pitch while the momenta of the two spins differ; yaw steps',
     confused_with=('inertia_mismatch',))

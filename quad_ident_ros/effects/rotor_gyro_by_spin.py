@@ -9,7 +9,7 @@ from quad_ident_ros.model.situation import MX, MY, SPEED, SPIN, WX, WY
 
 @compiled(fused=True, inlined=True)
 def wrench(p: Table, k: int, s: Table, rotors: Table) -> None:
-    """Add the moment of turning the rotors' axes; that of speeding them up comes with speeds."""
+    """Add the moment of turning the rotors' axes; rigid_body adds that of speeding them up."""
     for j in range(rotors.shape[0]):
         for i in range(s.shape[1]):
             # A rotor turns against the reaction torque that its spin names.
@@ -30,5 +30,5 @@ FORM = Form(
            'errata',
     same_motion=(('inertia of the rotors of one spin',
                   'another body that spins on board, such as a wheel or a scanner'),),
-    separated_by='a flight with that body at rest, or a rotor of each kind on a scale',
+    separated_by='a flight with that body at rest, or a rotor of each kind swung as a pendulum',
     wrench=wrench)

@@ -160,10 +160,9 @@ def _acting(vehicle: Vehicle, theta: np.ndarray, inputs: np.ndarray, omega_r: np
     Writes the inertia of the rotors into theta where they are to turn. Raises InputError.
     """
     others = np.zeros((len(t), INPUT))
-    alike, by_spin = (registry.PLACES['rotor_gyro', form.name]
-                      for form in registry.EFFECTS['rotor_gyro'].forms)
-    if omega_r.any() and not theta[alike].any() and not theta[by_spin].any():
-        theta[alike] = vehicle.rotor_inertia
+    if omega_r.any() and not any(theta[registry.PLACES['rotor_gyro', form.name]].any()
+                                 for form in registry.EFFECTS['rotor_gyro'].forms):
+        theta[registry.SLICES['rotor_gyro']] = vehicle.rotor_inertia
     names = list(dict.fromkeys(
         name for name, form in registry.FORMS if form.on_rotors and name in vehicle.effects
         and (theta != registry.NULL)[registry.PLACES[name, form.name]].any()))

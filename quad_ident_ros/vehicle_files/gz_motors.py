@@ -22,6 +22,9 @@ _PLUGINS = ('multicopter-motor-model', 'multicoptermotormodel', 'gazebo_motor_mo
 _CLASSIC, _NO_THRUST = 'libgazebo_motor_model.so', 25.0
 TURNS = {'cw': 1, 'ccw': -1}
 """Signs of the reaction torque by the direction in which a rotor turns, seen from above."""
+BY_SPIN = {1: 'inertia_clockwise', -1: 'inertia_counterclockwise'}
+"""Parameters of rotor_gyro by the spin of a rotor."""
+EQUAL = 1e-6    # relative: inertias of rotors that differ by less are rounded
 # Tag, what it is where the tag is missing (in the code of the plugin), unit.
 _NUMBERS = {'motorConstant': (8.54858e-6, 'N/(rad/s)^2'), 'momentConstant': (0.016, 'm'),
             'timeConstantUp': (1 / 80, 's'), 'timeConstantDown': (1 / 40, 's'),
@@ -94,8 +97,15 @@ def take_motors(draft: Draft, plugins: Sequence[MotorPlugin], spinning: Sequence
                              + ', '.join(f'{tag} {values[tag]:g}' for tag in absent))
     slow = values['rotorVelocitySlowdownSim']
     inertia = float(np.mean(spinning)) / slow
+    momentum = {'rotor_inertia': inertia}
     if inertia > 0.0:
         draft.take('rotor_inertia', inertia, 'kg m2', f'inertial of the rotors / {slow:g}')
+    if not np.allclose(spinning, np.mean(spinning), rtol=EQUAL, atol=0.0):
+        of_spin = {spin: [one / slow for one, plugin in zip(spinning, plugins, strict=True)
+                          if plugin.spin == spin] for spin in BY_SPIN}
+        momentum = {BY_SPIN[spin]: float(np.mean(some)) for spin, some in of_spin.items() if some}
+        draft.assumed.append('the inertias of the rotors differ: each acts as the mean of those '
+                             'of its spin')
     rolling = values['rollingMomentCoefficient']
     if rolling > 0.0:
         draft.assumed.append(
@@ -116,7 +126,7 @@ def take_motors(draft: Draft, plugins: Sequence[MotorPlugin], spinning: Sequence
         drag = per_sum_of_speeds(values['rotorDragCoefficient'], vehicle)
         return {'motor_lag': ({'time_constant': rise} if rise == fall else
                               {'rise': rise, 'fall': fall}),
-                'rotor_drag': {'coefficient': drag}, 'rotor_gyro': {'rotor_inertia': inertia},
+                'rotor_drag': {'coefficient': drag}, 'rotor_gyro': momentum,
                 **({'inflow': {'by_axial_speed': 1.0 / _NO_THRUST}} if classic else {}),
                 **faults}
 

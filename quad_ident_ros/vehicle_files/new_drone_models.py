@@ -11,7 +11,7 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import Vehicle
 from quad_ident_ros.vehicle_files.drone_models import TO_SPEED
 from quad_ident_ros.vehicle_files.edits import shown
-from quad_ident_ros.vehicle_files.new_rotors import rotor_inertia
+from quad_ident_ros.vehicle_files.new_rotors import rotor_inertias
 
 ROTORS = 4
 LAG = 0.004     # s, where the vehicle has none: crazyflow, which takes steps of 2 ms, needs one
@@ -34,7 +34,7 @@ def new(vehicle: Vehicle) -> str:
         'mixing_matrix': _matrix(mixing),
         'rotor_dyn_coef': _list([1.0 / LAG, 0.0, 1.0 / LAG, 0.0]),
         'drag_matrix': _matrix(-np.diag(vehicle.linear_drag)),
-        'prop_inertia': _number(rotor_inertia(vehicle)),
+        'prop_inertia': _number(float(np.mean(rotor_inertias(vehicle)))),
         'thrust_min': _number(vehicle.thrust_coefficient * vehicle.speed_min ** 2)}
     if math.isfinite(vehicle.speed_max):
         rows['thrust_max'] = _number(vehicle.thrust_coefficient * vehicle.speed_max ** 2)

@@ -9,7 +9,7 @@ import numpy as np
 from quad_ident_ros.model.vehicle import Vehicle
 from quad_ident_ros.vehicle_files.bodies import Body, is_body, nearest_body
 from quad_ident_ros.vehicle_files.edits import shown
-from quad_ident_ros.vehicle_files.gz_motors import TURNS
+from quad_ident_ros.vehicle_files.gz_motors import BY_SPIN, TURNS
 from quad_ident_ros.vehicle_files.out_body import remainder
 from quad_ident_ros.vehicle_files.reading import most_speed
 
@@ -42,32 +42,36 @@ PLUGIN = """<plugin filename="gz-sim-multicopter-motor-model-system"
 @dataclass(frozen=True)
 class Layout:
     """
-    A vehicle as a base and rotors that are alike.
+    A vehicle as a base and rotors.
 
-    base: the Body that with the rotors makes the vehicle; mass kg, and inertia (3,) kg m^2 of a
-    rotor in its axes; slow: how much slower its joint turns than the rotor.
+    base: the Body that with the rotors makes the vehicle; mass kg of a rotor, and inertias (3,)
+    kg m^2 of each in its axes; slow: how much slower its joint turns than the rotor.
     """
 
     base: Body
     mass: float
-    inertia: tuple[float, float, float]
+    inertias: tuple[tuple[float, float, float], ...]
     slow: float
 
 
-def rotor_inertia(vehicle: Vehicle) -> float:
-    """Return the moment of inertia of a rotor about its axis that acts, or is known, kg m^2."""
-    return vehicle.effects.get('rotor_gyro', {}).get('rotor_inertia', vehicle.rotor_inertia)
+def rotor_inertias(vehicle: Vehicle) -> tuple[float, ...]:
+    """Return the moment of inertia of each rotor about its axis that acts, or is known, kg m^2."""
+    acts = vehicle.effects.get('rotor_gyro', {'rotor_inertia': vehicle.rotor_inertia})
+    return tuple(acts.get('rotor_inertia', 0.0) + acts.get(BY_SPIN[rotor.spin], 0.0)
+                 for rotor in vehicle.rotors)
 
 
 def layout(vehicle: Vehicle) -> Layout:
     """Return the Layout of a vehicle without its effects, but for the inertia of its rotors."""
-    inertia = rotor_inertia(vehicle) or ROTOR_INERTIA * max(vehicle.inertia)
+    inertias = [inertia or ROTOR_INERTIA * max(vehicle.inertia)
+                for inertia in rotor_inertias(vehicle)]
     whole = nearest_body(Body(vehicle.mass, np.zeros(3), vehicle.inertia_matrix))
     mass = ROTOR_MASS * vehicle.mass
     for slow in SLOWDOWNS:
-        moments = (ACROSS * slow * inertia, ACROSS * slow * inertia, slow * inertia)
-        base = remainder(whole, [Body(mass, np.array(rotor.position), np.diag(moments))
-                                 for rotor in vehicle.rotors])
+        moments = tuple((ACROSS * slow * one, ACROSS * slow * one, slow * one)
+                        for one in inertias)
+        base = remainder(whole, [Body(mass, np.array(rotor.position), np.diag(each))
+                                 for rotor, each in zip(vehicle.rotors, moments, strict=True)])
         if is_body(base):
             break
     return Layout(nearest_body(base), mass, moments, slow)

@@ -47,7 +47,7 @@ def new(vehicle: Vehicle) -> str:
                    whole.base.inertia)]
     for j, rotor in enumerate(vehicle.rotors):
         parts += [_link(f'rotor_{j}', rotor.position, whole.mass, np.zeros(3),
-                        np.diag(whole.inertia)),
+                        np.diag(whole.inertias[j])),
                   JOINT.format(name=f'rotor_{j}')]
     parts += [plugin(vehicle, j, whole.slow, escape(vehicle.name))
               for j in range(len(vehicle.rotors))]

@@ -40,7 +40,7 @@ def new(vehicle: Vehicle) -> str:
     whole = layout(vehicle)
     parts = [_link('base_link', whole.base.mass, whole.base.centre, whole.base.inertia)]
     for j, rotor in enumerate(vehicle.rotors):
-        parts += [_link(f'rotor_{j}', whole.mass, np.zeros(3), np.diag(whole.inertia)),
+        parts += [_link(f'rotor_{j}', whole.mass, np.zeros(3), np.diag(whole.inertias[j])),
                   JOINT.format(name=f'rotor_{j}', place=shown(rotor.position))]
     plugins = [plugin(vehicle, j, whole.slow, escape(vehicle.name))
                for j in range(len(vehicle.rotors))]

@@ -87,7 +87,8 @@ NEEDS: dict[str, str] = {
     'ground_effect': 'the format has no thrust that depends on the height',
     'rotor_drag': 'the format has no drag of the rotors',
     'rotor_fault': 'the format has the same numbers for all rotors',
-    'rotor_gyro': 'it comes from the inertia of rotor bodies, which is not changed',
+    'rotor_gyro': 'it comes from the inertia of the rotors, which is not changed, or is one '
+                  'number for all of them',
     'blade_flapping': 'the format has no such moment with the velocity of the air',
     'attitude_misalignment': 'it is one of the sensors: turn that of the attitude or the IMU',
     'gyro_bias': 'it is one of the sensors: set it as the bias of the IMU',

@@ -42,10 +42,11 @@ def test_momentum_that_remains_has_the_body_precess(rotors, spins, inertias):
 
 
 @pytest.mark.parametrize('lag', [0.05, 1e-4])
-@pytest.mark.parametrize('rotors', [
-    {'rotor_inertia': 3e-5}, {'inertia_clockwise': 5e-5, 'inertia_counterclockwise': 2e-5}], ids=[
+@pytest.mark.parametrize(('rotors', 'by_spin'), [
+    ({'rotor_inertia': 3e-5}, {1: 3e-5, -1: 3e-5}),
+    ({'inertia_clockwise': 5e-5, 'inertia_counterclockwise': 2e-5}, {1: 5e-5, -1: 2e-5})], ids=[
     'alike', 'by_spin'])
-def test_speeding_rotors_up_keeps_the_angular_momentum_about_their_axes(rotors, lag):
+def test_speeding_rotors_up_keeps_the_angular_momentum_about_their_axes(rotors, by_spin, lag):
     # Two rotors of each sense, in a square: the vehicle turns about its axis alone.
     vehicle = replace(load_vehicle('hummingbird'), torque_coefficient=1e-30)
     hover = hover_speed(vehicle)
@@ -56,7 +57,6 @@ def test_speeding_rotors_up_keeps_the_angular_momentum_about_their_axes(rotors, 
     found = roll(vehicle, effects, course, state())
     _, speeds, _ = acted(course.t, course.commands, lag=lag)
     # A rotor turns against the reaction torque that its spin names.
-    by_spin = dict(zip((1, -1), list(rotors.values()) * 2, strict=False))
     momentum = -speeds @ [rotor.spin * by_spin[rotor.spin] for rotor in vehicle.rotors]
     total = vehicle.inertia[2] * found[:, 12] + momentum
     assert np.abs(total - total[0]).max() < 1e-12 * np.abs(momentum).max() + 1e-15

@@ -68,6 +68,38 @@ def test_effects_are_in_a_new_file_as_in_one_of_the_user(to):
                 rel=1e-9, but=UNLIKE.get(to, ()))
 
 
+BY_SPIN = {'inertia_clockwise': 6e-5, 'inertia_counterclockwise': 4e-5}
+
+
+@pytest.mark.parametrize('turning', [BY_SPIN, {
+    'rotor_inertia': 1e-5, 'inertia_clockwise': 5e-5, 'inertia_counterclockwise': 3e-5}],
+    ids=['by_spin', 'both_forms'])
+def test_rotors_of_two_makes_are_such_when_the_file_is_read_again(turning):
+    source, vehicle = base('gazebo')
+    loaded = replace(vehicle, effects={'rotor_gyro': turning})
+    found = export(loaded, 'gazebo')
+    read = again(source, found)
+    assert read.effects['rotor_gyro'] == pytest.approx(BY_SPIN)
+    assert read.rotor_inertia == pytest.approx(5e-5)
+    np.testing.assert_allclose(read.inertia_matrix, vehicle.inertia_matrix, atol=1e-15)
+    if turning is BY_SPIN:
+        assert [fate.name for fate in found.fates.carried] == ['rotor_gyro']
+
+
+def test_rotors_of_two_makes_have_their_mean_where_a_file_has_one_number_for_all():
+    source, vehicle = base('crazyflow')
+    found = export(replace(vehicle, effects={'rotor_gyro': BY_SPIN}), 'crazyflow')
+    assert again(source, found).effects['rotor_gyro'] == {'rotor_inertia': pytest.approx(5e-5)}
+    [fate] = found.fates.not_carried
+    assert fate.form == 'momentum_by_spin' and 'one number for all' in fate.reason
+
+
+def test_inertias_of_rotors_go_with_the_unit_of_speed():
+    twice = counted(replace(load_vehicle('hummingbird'), effects={'rotor_gyro': BY_SPIN}), 2.0)
+    assert twice.effects['rotor_gyro'] == {name: pytest.approx(inertia / 2.0)
+                                           for name, inertia in BY_SPIN.items()}
+
+
 @pytest.mark.parametrize('to', ['gazebo', 'mujoco'])
 @pytest.mark.parametrize('fault', [
     {'loss_3': 0.15}, {'loss_both_3': 0.15}, {'loss_1': 0.02, 'loss_both_4': 0.1},
