@@ -36,6 +36,7 @@ says whether the gap falls in MuJoCo, once the effects are exported, by as much 
 EPILOG = """\
 examples:
   ./run withheld --set development --count 12    a few cases, to see that it works
+  ./run withheld --set ordinary --count 60       forms of ordinary vehicles, to develop with
   ./run withheld                                 the evaluation set; kept in docs/withheld.md
   ./run withheld --count 150 --jobs 2            the same kinds of cases in proportion, but fewer
   ./run withheld calibrate                       fly development; print Rules.calibration

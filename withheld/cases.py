@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from withheld.forms import FORMS
-from withheld.lists import CONTROLLERS, NOISES, PATHS, STRANGERS, VEHICLES
+from withheld.lists import CONTROLLERS, NOISES, ORDINARY, PATHS, STRANGERS, VEHICLES
 from withheld.logs import LOGS
 
 EFFECTS = ('motor_lag', 'actuation_delay', 'rotor_drag', 'body_drag', 'wind', 'inflow',
@@ -65,20 +65,20 @@ class Case:
         return 'ours'
 
 
-def several(count, rng, part=None):
-    """Return effects {name: strength} and, where a part is given, forms {effect: form} of it."""
+def several(count, rng, forms=None):
+    """Return effects {name: strength}, with forms {effect: one of some}, where these are given."""
     while True:
         names = [str(name) for name in rng.choice(EFFECTS, count, replace=False)]
         if not any(twins <= set(names) for twins in TWINS):
             effects = {name: float(np.round(rng.uniform(0.8, 3.0), 2)) for name in names}
-            return {'effects': effects} | ({} if part is None else {'forms': {
-                name: str(rng.choice(list(FORMS[part][name]))) for name in names}})
+            return {'effects': effects} | ({} if forms is None else {'forms': {
+                name: str(rng.choice(list(forms[name]))) for name in names}})
 
 
-def _many(kind, count, size, rng, part=None, **options):
+def _many(kind, count, size, rng, forms=None, **options):
     """Return cases of several effects; size is their number, or (least, most) in turn."""
     least, most = (size, size) if isinstance(size, int) else size
-    return [Case(kind, **several(least + i % (most - least + 1), rng, part), **options)
+    return [Case(kind, **several(least + i % (most - least + 1), rng, forms), **options)
             for i in range(count)]
 
 
@@ -136,7 +136,7 @@ def _datasheets(count):
 
 def _wholes(count, rng, part):
     """Return vehicles as real ones are: four to seven effects at once, each in another form."""
-    return [Case('whole', **several(4 + i % 4, rng, part), wrong_file=i % 2 == 0,
+    return [Case('whole', **several(4 + i % 4, rng, FORMS[part]), wrong_file=i % 2 == 0,
                  log='fast_control' if i % 3 == 1 else '') for i in range(count)]
 
 
@@ -146,7 +146,8 @@ def quick_set(rng):
     cases = [Case('single', {name: strength}) for name in EFFECTS for strength in STRENGTHS]
     cases += _nones(6) + _many('pair', 6, 2, rng) + _many('mixture', 6, (3, 5), rng)
     cases += _strangers(part, (3.0,)) + _forms(part, (3.0,))
-    cases += _many('pair', 4, 2, rng, part) + _many('mixture', 3, (3, 5), rng, part)
+    cases += _many('pair', 4, 2, rng, FORMS[part])
+    cases += _many('mixture', 3, (3, 5), rng, FORMS[part])
     cases += _wholes(12, rng, part)
     cases += _singles((3.0,), bodies=True)[::6] + _gusty(2)
     cases += _singles((1.0, 3.0), wrong_file=True)[::3] + _nones(3, wrong_file=True)
@@ -158,6 +159,16 @@ def quick_set(rng):
     return _dealt(cases, part, rng)
 
 
+def ordinary_set(rng):
+    """Return a set of forms of ordinary vehicles alone, to develop with."""
+    part = 'development'
+    cases = [Case('single', {name: (1.0, 3.0)[i % 2]}, forms={name: form})
+             for i, (name, form) in enumerate(
+                 (name, form) for name, forms in ORDINARY.items() for form in forms)]
+    cases += _many('pair', 36, 2, rng, ORDINARY) + _many('mixture', 24, (3, 5), rng, ORDINARY)
+    return _dealt(cases, part, rng)
+
+
 def full_set(rng):
     """Return the whole set: what the tables are made of."""
     part = 'evaluation'
@@ -166,8 +177,8 @@ def full_set(rng):
     cases += _nones(24) + _many('pair', 24, 2, rng) + _many('mixture', 18, (3, 5), rng)
     cases += _strangers(part, (1.0, 3.0, 3.0))
     cases += [Case('poor', {} if name == 'none' else {name: 3.0}) for name in HOVERED]
-    cases += _forms(part, (1.0, 3.0)) + _many('pair', 18, 2, rng, part)
-    cases += _many('mixture', 12, (3, 5), rng, part) + _wholes(12, rng, part)
+    cases += _forms(part, (1.0, 3.0)) + _many('pair', 18, 2, rng, FORMS[part])
+    cases += _many('mixture', 12, (3, 5), rng, FORMS[part]) + _wholes(12, rng, part)
     cases += _singles((3.0,), bodies=True)[::2] + _gusty(6)
     cases += _singles((1.0, 3.0), wrong_file=True) + _nones(8, wrong_file=True)
     cases += _many('pair', 8, 2, rng, wrong_file=True)
@@ -233,4 +244,5 @@ class Set:
 
 
 SETS = {'development': Set(quick_set, 'development', 3, 20.0),
+        'ordinary': Set(ordinary_set, 'development', 4, 20.0),
         'evaluation': Set(full_set, 'evaluation', 4, 20.0, hybrids=True)}

@@ -15,7 +15,16 @@ import pytest
 from quad_ident_ros.effects.registry import EFFECTS as OURS
 from withheld import lists
 from withheld import score as scores
-from withheld.cases import Case, EFFECTS, full_set, quick_set, SETS, stratum_of, STRENGTHS
+from withheld.cases import (
+    Case,
+    EFFECTS,
+    full_set,
+    ordinary_set,
+    quick_set,
+    SETS,
+    stratum_of,
+    STRENGTHS,
+)
 from withheld.forms import FORMS
 from withheld.goals import goals
 from withheld.seal import Broken, seal, unseal
@@ -120,6 +129,18 @@ def test_every_column_has_cases_of_its_own(make):
     ({'setup': 0}, 'estimator'), ({'setup': 0, 'faulty': True}, 'faulty')])
 def test_a_case_counts_where_what_is_hardest_about_it_is(options, column):
     assert Case('single', {'wind': 1.0}, **options).column == column
+
+
+def test_the_ordinary_set_has_each_of_its_forms_alone_and_some_together():
+    cases = ordinary_set(np.random.default_rng(1))
+    alone = [(name, form) for case in cases if case.kind == 'single'
+             for name, form in case.forms.items()]
+    assert sorted(alone) == sorted(
+        (name, form) for name, forms in lists.ORDINARY.items() for form in forms)
+    assert {*lists.ORDINARY} == {*EFFECTS} and {*alone} <= {
+        (name, form) for name, forms in FORMS['development'].items() for form in forms}
+    assert {case.kind for case in cases} == {'single', 'pair', 'mixture'}
+    assert all({*case.forms} == {*case.effects} for case in cases)
 
 
 def test_the_order_of_the_cases_tells_nothing():
