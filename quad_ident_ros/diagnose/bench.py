@@ -31,6 +31,8 @@ from quad_ident_ros.greybox.linear import Slopes, slopes_at, WRENCH
 from quad_ident_ros.greybox.parameters import NAMES, nominal, SPLIT
 from quad_ident_ros.model.vehicle import Vehicle
 
+# Of a correlation, as the inverse of an information keeps it.
+ROUNDING = float(np.sqrt(np.finfo(float).eps))
 GUSTY = [SPLIT + place for place in range(SLICES[GUSTS.name].start, SLICES[GUSTS.name].stop)]
 
 
@@ -361,10 +363,16 @@ def given(covariance: np.ndarray, places: list[int]) -> tuple[np.ndarray, np.nda
     """
     Return how others move with some places (K,) that become known, (C, K), and what then remains.
 
-    The remaining covariance (C, C) is that of normal variables given these.
+    The remaining covariance (C, C) is that of normal variables given these. Parameters that do the
+    same are known by themselves to far less than together: what remains is not known better than
+    rounding leaves of that, and never negative.
     """
-    moved = covariance[:, places] @ np.linalg.pinv(covariance[np.ix_(places, places)])
-    return moved, covariance - moved @ covariance[places]
+    errors = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
+    values, vectors = np.linalg.eigh(covariance / np.outer(errors, errors))
+    table = (vectors * np.maximum(values, ROUNDING * values[-1])) @ vectors.T
+    moved = np.linalg.solve(table[np.ix_(places, places)], table[places]).T
+    return (moved * np.outer(errors, 1.0 / errors[places]),
+            (table - moved @ table[places]) * np.outer(errors, errors))
 
 
 def tie(fit: Estimate, one: Candidate, other: Candidate) -> float:

@@ -448,6 +448,17 @@ def test_what_is_known_of_one_of_two_once_the_other_is():
     assert remains[1] == pytest.approx([0.0, 0.0], abs=1e-12)
 
 
+@pytest.mark.parametrize(('each', 'rounding'), [(1e2, 0.0), (1e2, 1e-9), (1e5, 0.0), (1e8, 1e-9)])
+def test_of_two_that_do_the_same_rounding_makes_no_certainty(each, rounding):
+    """In units a thousand times apart; the sum is known to a thousandth, as far as is kept."""
+    covariance = each ** 2 * np.array([[1.0 - rounding, -1e3], [-1e3, 1e6]])
+    covariance[1, 1] += 1e6 * 1e-3 ** 2
+    moved, remains = given(covariance, [1])
+    assert moved[0, 0] == pytest.approx(-1e-3, rel=1e-3)
+    assert np.sqrt(remains[0, 0]) > 0.99e-3
+    assert 0.0 < standard_errors_from_none(np.array([0.1]), remains[:1, :1]) < 101.0
+
+
 @pytest.mark.parametrize('off', [0.5, 3.0, 60.0])
 def test_one_parameter_is_as_far_as_its_standard_errors(off):
     far = standard_errors_from_none(np.array([-2.0 * off]), np.array([[4.0]]))
