@@ -22,6 +22,7 @@ from quad_ident_ros.diagnose.in_closed_loop import in_closed_loop
 from quad_ident_ros.diagnose.in_simulator import gap_in_simulator, refuse_inertial
 from quad_ident_ros.diagnose.intake import take_in
 from quad_ident_ros.diagnose.judgement import judge, pooled
+from quad_ident_ros.diagnose.like_feedback import is_like_feedback, with_like_feedback
 from quad_ident_ros.diagnose.noise import noise_of
 from quad_ident_ros.diagnose.nuisances import as_data as nuisances_as_data
 from quad_ident_ros.diagnose.nuisances import late_states
@@ -87,17 +88,20 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
                          + (f'measured rotor speeds rule out {gone}'
                             if ruled_out else 'docs/diagnosis.md says what they would need')
                          + '; name other effects')
-    selection = select(intake.flights, vehicle, causes, rules,
+    early = tuple(cause for cause in causes if not is_like_feedback(cause))
+    selection = select(intake.flights, vehicle, early, rules,
                        lambda share: told(0.7 * share))
     prompt = late_states(selection, intake.flights, vehicle, rules)
     if prompt:
         intake = intake.shifted(prompt)
-        selection = select(intake.flights, vehicle, causes, rules,
+        selection = select(intake.flights, vehicle, early, rules,
                            lambda share: told(0.7 + 0.05 * share))
     noise = noise_of(selection.best.estimate, intake.flights, vehicle, rules)
     bench = Bench(intake.flights, (*intake.tracks, intake.held_out), vehicle, selection, noise,
                   rules)
     bench, judged = in_fewest(bench, judge(bench))
+    bench, judged, causes = with_like_feedback(bench, judged, intake, causes,
+                                               lambda share: told(0.75 + 0.05 * share))
     told(0.8)
     bench, judged = beside_gusts(bench, judged, intake, causes,
                                  lambda share: told(0.8 + 0.1 * share))

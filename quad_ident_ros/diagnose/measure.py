@@ -28,6 +28,7 @@ from quad_ident_ros.greybox.parameters import nominal
 from quad_ident_ros.model.vehicle import Vehicle
 
 TRANSLATION = ('position', 'velocity')
+ROTATION = ('attitude', 'rate')
 
 
 def open_loop_gap(bench: Bench, judged: Judgement) -> Gap:

@@ -84,7 +84,8 @@ class Form:
     apart: parameters that do what another effect does, each of them a term that errs by itself,
     for how wrong a law may be is no matter of names; needs_reference: it shows only against a
     position, a velocity or an attitude, not in accelerometer and gyro alone; needs_height: it
-    shows only where the height was measured; same_motion, separated_by: as of
+    shows only where the height was measured; like_feedback: it does what a controller makes of
+    commands that differ from the logged ones; same_motion, separated_by: as of
     Effect, of this form.
     """
 
@@ -105,6 +106,7 @@ class Form:
     apart: tuple[str, ...] = ()
     needs_reference: bool = False
     needs_height: bool = False
+    like_feedback: bool = False
     same_motion: tuple[tuple[str, str], ...] = ()
     separated_by: str = ''
 

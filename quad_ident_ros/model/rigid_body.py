@@ -25,6 +25,7 @@ from quad_ident_ros.effects.registry import (
     THRUST,
     WRENCH,
 )
+from quad_ident_ros.effects.rotor_gyro_by_spin import inertia_of
 from quad_ident_ros.model import residual_in_flight
 from quad_ident_ros.model.situation import (
     ALONG,
@@ -121,9 +122,10 @@ STATE = 13      # position, velocity (world), quaternion (body to world), rate (
 # smoothed commands after these.
 INPUT = 10
 GUSTY = ROWS_OF[GUSTS.name, GUSTS.forms[0].name]
-# Parameters of a rotor's inertia about its axis: of all alike; of those of spin 1, and of -1.
+# Parameters of a rotor's inertia about its axis: of all alike; for those of spin 1, and of -1.
 INERTIA = PLACES['rotor_gyro', 'momentum'].start
-INERTIA_BY_SPIN = PLACES['rotor_gyro', 'momentum_by_spin'].start
+OF_SPIN = (PLACES['rotor_gyro', 'momentum_by_spin'].start,
+           PLACES['rotor_gyro', 'momentum_by_spin'].start + 1)
 CONSTANTS = 19
 ROUNDING = 2.0 ** -52   # of a moment of inertia: smaller products count as 0
 
@@ -183,10 +185,12 @@ def prepare(v: np.ndarray, places: np.ndarray, theta: np.ndarray, s: np.ndarray,
             rotors[j, RY, i] = s[ARMS_Y, i] * places[j, 1] - s[COM_Y, i]
             rotors[j, RZ, i] = places[j, 2] - s[COM_Z, i]
         spin = places[j, 3]
-        apart = INERTIA_BY_SPIN if spin > 0.0 else INERTIA_BY_SPIN + 1
+        own = OF_SPIN[0] if spin > 0.0 else OF_SPIN[1]
+        other = OF_SPIN[1] if spin > 0.0 else OF_SPIN[0]
         for i in range(s.shape[1]):
             rotors[j, SPIN, i] = spin
-            rotors[j, SPUN, i] = spin * (theta[INERTIA, i] + theta[apart, i])
+            rotors[j, SPUN, i] = spin * (theta[INERTIA, i]
+                                         + inertia_of(theta[own, i], theta[other, i]))
 
 
 @compiled(fused=True)

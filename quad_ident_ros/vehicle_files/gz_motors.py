@@ -9,6 +9,7 @@ import math
 import numpy as np
 
 from quad_ident_ros.effects.registry import titled, Values
+from quad_ident_ros.effects.rotor_gyro_by_spin import values_of
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import Vehicle
 from quad_ident_ros.vehicle_files.reading import Draft, per_sum_of_speeds
@@ -22,8 +23,6 @@ _PLUGINS = ('multicopter-motor-model', 'multicoptermotormodel', 'gazebo_motor_mo
 _CLASSIC, _NO_THRUST = 'libgazebo_motor_model.so', 25.0
 TURNS = {'cw': 1, 'ccw': -1}
 """Signs of the reaction torque by the direction in which a rotor turns, seen from above."""
-BY_SPIN = {1: 'inertia_clockwise', -1: 'inertia_counterclockwise'}
-"""Parameters of rotor_gyro by the spin of a rotor."""
 EQUAL = 1e-6    # relative: inertias of rotors that differ by less are rounded
 # Tag, what it is where the tag is missing (in the code of the plugin), unit.
 _NUMBERS = {'motorConstant': (8.54858e-6, 'N/(rad/s)^2'), 'momentConstant': (0.016, 'm'),
@@ -102,10 +101,12 @@ def take_motors(draft: Draft, plugins: Sequence[MotorPlugin], spinning: Sequence
         draft.take('rotor_inertia', inertia, 'kg m2', f'inertial of the rotors / {slow:g}')
     if not np.allclose(spinning, np.mean(spinning), rtol=EQUAL, atol=0.0):
         of_spin = {spin: [one / slow for one, plugin in zip(spinning, plugins, strict=True)
-                          if plugin.spin == spin] for spin in BY_SPIN}
-        momentum = {BY_SPIN[spin]: float(np.mean(some)) for spin, some in of_spin.items() if some}
-        draft.assumed.append('the inertias of the rotors differ: each acts as the mean of those '
-                             'of its spin')
+                          if plugin.spin == spin] or [inertia] for spin in TURNS.values()}
+        apart = values_of({spin: float(np.mean(some)) for spin, some in of_spin.items()})
+        momentum = momentum if apart is None else apart
+        draft.assumed.append('the inertias of the rotors differ: each acts as the mean of '
+                             + ('all: those of one spin have over 1.5 times those of the other'
+                                if apart is None else 'those of its spin'))
     rolling = values['rollingMomentCoefficient']
     if rolling > 0.0:
         draft.assumed.append(

@@ -6,10 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from quad_ident_ros.effects.rotor_gyro_by_spin import inertias
 from quad_ident_ros.model.vehicle import Vehicle
 from quad_ident_ros.vehicle_files.bodies import Body, is_body, nearest_body
 from quad_ident_ros.vehicle_files.edits import shown
-from quad_ident_ros.vehicle_files.gz_motors import BY_SPIN, TURNS
+from quad_ident_ros.vehicle_files.gz_motors import TURNS
 from quad_ident_ros.vehicle_files.out_body import remainder
 from quad_ident_ros.vehicle_files.reading import most_speed
 
@@ -57,19 +58,19 @@ class Layout:
 def rotor_inertias(vehicle: Vehicle) -> tuple[float, ...]:
     """Return the moment of inertia of each rotor about its axis that acts, or is known, kg m^2."""
     acts = vehicle.effects.get('rotor_gyro', {'rotor_inertia': vehicle.rotor_inertia})
-    return tuple(acts.get('rotor_inertia', 0.0) + acts.get(BY_SPIN[rotor.spin], 0.0)
-                 for rotor in vehicle.rotors)
+    apart = inertias(acts)
+    return tuple(acts.get('rotor_inertia', 0.0) + apart[rotor.spin] for rotor in vehicle.rotors)
 
 
 def layout(vehicle: Vehicle) -> Layout:
     """Return the Layout of a vehicle without its effects, but for the inertia of its rotors."""
-    inertias = [inertia or ROTOR_INERTIA * max(vehicle.inertia)
-                for inertia in rotor_inertias(vehicle)]
+    spun = [inertia or ROTOR_INERTIA * max(vehicle.inertia)
+            for inertia in rotor_inertias(vehicle)]
     whole = nearest_body(Body(vehicle.mass, np.zeros(3), vehicle.inertia_matrix))
     mass = ROTOR_MASS * vehicle.mass
     for slow in SLOWDOWNS:
         moments = tuple((ACROSS * slow * one, ACROSS * slow * one, slow * one)
-                        for one in inertias)
+                        for one in spun)
         base = remainder(whole, [Body(mass, np.array(rotor.position), np.diag(each))
                                  for rotor, each in zip(vehicle.rotors, moments, strict=True)])
         if is_body(base):

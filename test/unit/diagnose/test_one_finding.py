@@ -54,8 +54,8 @@ def test_a_log_without_all_commands_does_not_tell_thrust_from_mass(every, apart)
 
 @pytest.mark.slow
 def test_momentum_that_remains_in_hover_may_be_that_of_a_wheel_on_board():
-    found = diagnosed({'rotor_gyro': {'inertia_clockwise': 1.5e-5,
-                                      'inertia_counterclockwise': 1e-5}})
+    found = diagnosed({'rotor_gyro': {'heavier_clockwise': 1e-5,
+                                      'heavier_counterclockwise': 2.5e-6}})
     assert found.verdict == ('rotor_gyro',) and found.ranking[0].form == 'momentum_by_spin'
     [line] = one_finding_lines(found)
     assert 'a wheel or a scanner' in line and 'a flight with that body at rest' in line

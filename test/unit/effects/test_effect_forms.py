@@ -64,8 +64,8 @@ OTHERS = {
     ('blade_flapping', 'drag_centre'): {'arm': 0.05},
     ('blade_flapping', 'drag_point'): {'arm_x': 0.03, 'arm_y': -0.02, 'arm_z': 0.05},
     ('rotor_fault', 'thrust_and_torque'): {'loss_both_2': 0.1},
-    ('rotor_gyro', 'momentum_by_spin'): {'inertia_clockwise': 1e-4,
-                                         'inertia_counterclockwise': 5e-5},
+    ('rotor_gyro', 'momentum_by_spin'): {'heavier_clockwise': 1e-4,
+                                         'heavier_counterclockwise': 5e-5},
     ('inflow', 'momentum'): {'through': 0.5},
     ('inflow', 'curve'): {'climb': 0.1, 'climb_square': 0.05, 'edgewise': 0.1,
                           'edgewise_square': 0.02},
@@ -251,7 +251,7 @@ FREE = replace(load_vehicle('hummingbird'), torque_coefficient=1e-30)
 SPINS = np.array([rotor.spin for rotor in FREE.rotors])
 TURNING = hover_speed(FREE)
 GYRO = {'rotor_gyro': {'rotor_inertia': 5e-5}}
-ALIKE = {'rotor_gyro': {'inertia_clockwise': 5e-5, 'inertia_counterclockwise': 5e-5}}
+ALIKE = {'rotor_gyro': {'heavier_clockwise': 2.5e-5, 'heavier_counterclockwise': 2.5e-5}}
 
 
 @pytest.mark.parametrize('lag', [{}, {'time_constant': 0.05}, {'rise': 0.02, 'fall': 0.06}],
@@ -264,7 +264,7 @@ def test_rotors_of_both_spins_that_are_alike_are_rotors_that_are_alike(lag):
 
 
 def test_momenta_of_both_forms_add_up():
-    half = {'inertia_clockwise': 2e-5, 'inertia_counterclockwise': 2e-5}
+    half = {'heavier_clockwise': 1e-5, 'heavier_counterclockwise': 1e-5}
     course = steps(VEHICLE)
     both, one = (roll(VEHICLE, each, course, START) for each in (
         {'rotor_gyro': {'rotor_inertia': 3e-5, **half}}, GYRO))

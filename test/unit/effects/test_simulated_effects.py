@@ -87,8 +87,8 @@ def test_rotors_that_are_flown_take_the_place_of_omega_r():
     gyro = {'rotor_gyro': {'rotor_inertia': VEHICLE.rotor_inertia}}
     assert np.abs(fly({**drag, **gyro}, rows).record.columns['wx'] - asked).max() < 1e-12
     # Nor is it added to one that they have by their spin.
-    by_spin = {'rotor_gyro': dict.fromkeys(('inertia_clockwise', 'inertia_counterclockwise'),
-                                           VEHICLE.rotor_inertia)}
+    by_spin = {'rotor_gyro': dict.fromkeys(('heavier_clockwise', 'heavier_counterclockwise'),
+                                           0.5 * VEHICLE.rotor_inertia)}
     again = fly({**drag, **by_spin}, rows, omega_r=50.0).record.columns['wx']
     assert np.abs(again - asked).max() < 1e-12
 

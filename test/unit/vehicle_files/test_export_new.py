@@ -12,6 +12,8 @@ import pytest
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import load_vehicle
 from quad_ident_ros.vehicle_files.export import export
+from quad_ident_ros.vehicle_files.load import read_vehicle
+from quad_ident_ros.vehicle_files.source import Source
 from quad_ident_ros.vehicle_files.speed_unit import counted
 from quad_ident_ros.vehicle_files.targets import TARGETS
 
@@ -68,11 +70,11 @@ def test_effects_are_in_a_new_file_as_in_one_of_the_user(to):
                 rel=1e-9, but=UNLIKE.get(to, ()))
 
 
-BY_SPIN = {'inertia_clockwise': 6e-5, 'inertia_counterclockwise': 4e-5}
+BY_SPIN = {'heavier_clockwise': 3.75e-5, 'heavier_counterclockwise': 1.25e-5}  # 5.5e-5, 4.5e-5
 
 
 @pytest.mark.parametrize('turning', [BY_SPIN, {
-    'rotor_inertia': 1e-5, 'inertia_clockwise': 5e-5, 'inertia_counterclockwise': 3e-5}],
+    'rotor_inertia': 1e-5, 'heavier_clockwise': 3.25e-5, 'heavier_counterclockwise': 7.5e-6}],
     ids=['by_spin', 'both_forms'])
 def test_rotors_of_two_makes_are_such_when_the_file_is_read_again(turning):
     source, vehicle = base('gazebo')
@@ -93,6 +95,17 @@ def test_rotors_of_two_makes_have_their_mean_where_a_file_has_one_number_for_all
     assert again(source, found).effects['rotor_gyro'] == {'rotor_inertia': pytest.approx(5e-7)}
     [fate] = [one for one in found.fates.not_carried if one.name == 'rotor_gyro']
     assert fate.form == 'momentum_by_spin' and 'one number for all' in fate.reason
+
+
+def test_rotors_that_differ_by_more_than_makes_do_have_their_mean():
+    _, vehicle = base('gazebo')
+    text = export(replace(vehicle, effects={'rotor_gyro': {'heavier_clockwise': 5e-5}}),
+                  'gazebo').text
+    wide = text.replace('<izz>0.0004</izz>', '<izz>0.0001</izz>')   # ten times that of a rotor
+    found = read_vehicle(Source('model.sdf', wide))
+    assert wide != text
+    assert found.vehicle.effects['rotor_gyro'] == {'rotor_inertia': pytest.approx(3.5e-5)}
+    assert any('over 1.5 times' in line for line in found.assumed)
 
 
 def test_inertias_of_rotors_go_with_the_unit_of_speed():
