@@ -14,9 +14,8 @@ EFFECTS = ('motor_lag', 'actuation_delay', 'rotor_drag', 'body_drag', 'wind', 'i
            'ground_effect', 'battery_sag', 'thrust_scale', 'mass_offset', 'inertia_mismatch',
            'com_offset', 'rotor_fault', 'rotor_gyro', 'blade_flapping', 'attitude_misalignment',
            'gyro_bias')
-# Names that do as well as `unknown`: a thrust curve of another exponent is a thrust curve, and a
-# body that spins on board turns a vehicle as rotors do of which those of one spin are heavier.
-ALSO = {'thrust_exponent': ('thrust_scale',), 'flywheel': ('rotor_gyro',)}
+# Names that do as well as `unknown`: a thrust curve of another exponent is a thrust curve.
+ALSO = {'thrust_exponent': ('thrust_scale',)}
 STRENGTHS = (0.3, 1.0, 3.0)
 DATASHEET = ('thrust_scale', 'inertia_mismatch', 'motor_lag', 'rotor_drag')
 # A pair of these in one reality would be one effect with another name.
