@@ -57,7 +57,7 @@ class Layout:
 
 def rotor_inertias(vehicle: Vehicle) -> tuple[float, ...]:
     """Return the moment of inertia of each rotor about its axis that acts, or is known, kg m^2."""
-    acts = vehicle.effects.get('rotor_gyro', {'rotor_inertia': vehicle.rotor_inertia})
+    acts = vehicle.effects.get('rotor_gyro') or {'rotor_inertia': vehicle.rotor_inertia}
     apart = inertias(acts)
     return tuple(acts.get('rotor_inertia', 0.0) + apart[rotor.spin] for rotor in vehicle.rotors)
 

@@ -13,6 +13,7 @@ from quad_ident_ros.errors import InputError
 from quad_ident_ros.model.vehicle import load_vehicle
 from quad_ident_ros.vehicle_files.export import export
 from quad_ident_ros.vehicle_files.load import read_vehicle
+from quad_ident_ros.vehicle_files.new_rotors import rotor_inertias
 from quad_ident_ros.vehicle_files.source import Source
 from quad_ident_ros.vehicle_files.speed_unit import counted
 from quad_ident_ros.vehicle_files.targets import TARGETS
@@ -106,6 +107,12 @@ def test_rotors_that_differ_by_more_than_makes_do_have_their_mean():
     assert wide != text
     assert found.vehicle.effects['rotor_gyro'] == {'rotor_inertia': pytest.approx(3.5e-5)}
     assert any('over 1.5 times' in line for line in found.assumed)
+
+
+def test_an_effect_without_parameters_leaves_rotors_what_the_file_knows_of_them():
+    _, vehicle = base('gazebo')
+    known = replace(vehicle, rotor_inertia=5e-5, effects={'rotor_gyro': {}})
+    assert rotor_inertias(known) == (5e-5,) * len(vehicle.rotors)
 
 
 def test_inertias_of_rotors_go_with_the_unit_of_speed():
