@@ -560,6 +560,43 @@ class Wand(Influence):
         return out
 
 
+class Barometer(Influence):
+    """
+    A height from a barometer in the flow: the pressure there is not that of air at rest.
+
+    It is off by a share of the dynamic pressure, another one for each side that the flow comes
+    from; the estimator follows in a moment, and so its climb is off as well. As PX4 makes up for
+    (EKF2_PCOEF_XP and others); W. Gracey, Measurement of Aircraft Speed and Altitude, NASA
+    Reference Publication 1046, 1980.
+    """
+
+    TIME = 0.15                 # s, in which the estimator follows
+
+    def __init__(self, size, rng):
+        """Draw for flow from ahead, behind, left and right what the height is off, s^2/m."""
+        self.shares = 0.002 * size * rng.uniform(0.4, 1.0, (2, 2)) * rng.choice([-1.0, 1.0])
+
+    def begin(self, rng):
+        """Start as in hover."""
+        self._off, self._last = 0.0, None
+
+    def measured(self, time, state, thrust):
+        """Return the state with a height and a climb that are off."""
+        x, y, z, w = state[6:10]
+        vx, vy, vz = state[3:6]
+        along = np.array([
+            (1 - 2 * (y * y + z * z)) * vx + 2 * (x * y + z * w) * vy + 2 * (x * z - y * w) * vz,
+            2 * (x * y - z * w) * vx + (1 - 2 * (x * x + z * z)) * vy + 2 * (y * z + x * w) * vz])
+        goal = float(np.sum(np.where(along > 0.0, *self.shares.T) * along ** 2))
+        step = 0.0 if self._last is None else time - self._last
+        self._last = time
+        self._off = goal + np.exp(-step / self.TIME) * (self._off - goal)
+        out = state.copy()
+        out[2] += self._off
+        out[5] += (goal - self._off) / self.TIME
+        return out
+
+
 # Each with what of the vehicle its size is measured by.
 KINDS = {'periodic_force': (Periodic, 'weight'), 'tether': (Tether, 'weight'),
          'updraft': (Updraft, 'weight'), 'thrust_exponent': (Exponent, 'hover'),
@@ -573,4 +610,5 @@ KINDS = {'periodic_force': (Periodic, 'weight'), 'tether': (Tether, 'weight'),
          'flywheel': (Flywheel, 'weight', 'radius'), 'carousel': (Carousel, 'mass'),
          'sandbag': (Sandbag, 'weight'), 'bent': (Bent, 'rotors', 'weight', 'hover'),
          'turret': (Turret, 'weight', 'radius'), 'roped': (Roped, 'weight'),
-         'hoops': (Hoops, 'weight', 'radius', 'hover'), 'wand': (Wand,)}
+         'hoops': (Hoops, 'weight', 'radius', 'hover'), 'wand': (Wand,),
+         'barometer': (Barometer,)}
