@@ -29,8 +29,8 @@ STRANGERS = {
     DEVELOPMENT: ('periodic_force', 'tether', 'thrust_exponent', 'backlash', 'updraft', 'slosh',
                   'ceiling', 'neighbours', 'compass', 'branches', 'leash', 'recoil',
                   'keel', 'twisted', 'flywheel', 'carousel', 'sandbag', 'bent', 'turret', 'roped',
-                  'stutter'),
-    EVALUATION: ('wall', 'whirl', 'hoops', 'wand', 'barometer')}
+                  'stutter', 'wall', 'whirl', 'hoops', 'wand'),
+    EVALUATION: ('barometer', 'retractor', 'glitch')}
 ORDINARY = {
     'motor_lag': ('underdamped', 'two_poles', 'speed_dependent', 'brushed', 'brushless',
                   'torque_balance', 'dead_band'),

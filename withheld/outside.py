@@ -597,6 +597,76 @@ class Barometer(Influence):
         return out
 
 
+class Retractor(Force):
+    """
+    A safety line from a reel overhead, which pays out by itself and locks where it is pulled fast.
+
+    As the belts of cars do: the reel pulls lightly, and once locked the line pulls as a spring
+    does, until it is slack again. Standard EN 360 on retractable arresters of falls, with which
+    heavy vehicles are secured in first flights, too.
+    """
+
+    HIGH, ASIDE = 3.5, 0.4              # m; m from the middle, at most, along either axis
+    LOCKS, LIGHT = 0.6, 0.02            # m/s; of the pull, at 1 m of stretch, what the reel pulls
+
+    def __init__(self, size, weight, rng):
+        """Draw where the reel is; take how stiff the line is, N/m."""
+        self.reel = np.array([*rng.uniform(-self.ASIDE, self.ASIDE, 2), self.HIGH])
+        self.stiffness = 0.012 * size * weight
+
+    def begin(self, rng):
+        """Start unlocked."""
+        self._held, self._far, self._pays = None, 0.0, 0.0
+
+    def force(self, time, position, velocity):
+        """Return the force."""
+        away = self.reel - position
+        self._far = max(float(np.linalg.norm(away)), 1e-9)
+        self._pays = -float(away @ velocity) / self._far
+        longer = 0.0 if self._held is None else max(self._far - self._held, 0.0)
+        return self.stiffness * (self.LIGHT + longer) * away / self._far
+
+    def after(self, step, rotation, acceleration):
+        """Lock the reel, or let it go."""
+        if self._held is None and self._pays > self.LOCKS:
+            self._held = self._far
+        elif self._held is not None and self._far < self._held:
+            self._held = None
+
+
+class Glitch(Influence):
+    """
+    Places by satellites that are reflected for a while: the estimate is drawn aside, and back.
+
+    The filter of the autopilot believes it by and by, in places as in velocities. P. D. Groves,
+    Principles of GNSS, Inertial, and Multisensor Integrated Navigation Systems, 2013, on paths
+    that are reflected; as between houses in practice.
+    """
+
+    STAYS = np.array([(0.5, 1.8), (1.0, 2.5)])  # s: on the spot, aside
+    TIME, COUNT, UP = 0.5, 40, 1.5      # s, of the filter; far more than needed; of the vertical
+
+    def __init__(self, size, rng):
+        """Take how far aside, m."""
+        self.far = 0.04 * size
+
+    def begin(self, rng):
+        """Draw when, and whereto."""
+        self.times = np.cumsum(rng.uniform(*self.STAYS.T, (self.COUNT, 2)).ravel())
+        aside = rng.normal(size=(self.COUNT, 3)) * [1.0, 1.0, self.UP]
+        aside *= self.far / np.linalg.norm(aside, axis=1)[:, None]
+        self.jumps = np.stack([aside, -aside], axis=1).reshape(-1, 3)
+
+    def measured(self, time, state, thrust):
+        """Return the state as the filter has it."""
+        past = self.times <= time
+        left = np.exp(-(time - self.times[past]) / self.TIME)
+        out = state.copy()
+        out[:3] += (1.0 - left) @ self.jumps[past]
+        out[3:6] += left @ self.jumps[past] / self.TIME
+        return out
+
+
 # Each with what of the vehicle its size is measured by.
 KINDS = {'periodic_force': (Periodic, 'weight'), 'tether': (Tether, 'weight'),
          'updraft': (Updraft, 'weight'), 'thrust_exponent': (Exponent, 'hover'),
@@ -611,4 +681,4 @@ KINDS = {'periodic_force': (Periodic, 'weight'), 'tether': (Tether, 'weight'),
          'sandbag': (Sandbag, 'weight'), 'bent': (Bent, 'rotors', 'weight', 'hover'),
          'turret': (Turret, 'weight', 'radius'), 'roped': (Roped, 'weight'),
          'hoops': (Hoops, 'weight', 'radius', 'hover'), 'wand': (Wand,),
-         'barometer': (Barometer,)}
+          'barometer': (Barometer,), 'retractor': (Retractor, 'weight'), 'glitch': (Glitch,)}

@@ -1,0 +1,43 @@
+# Copyright 2026 quad_ident_ros contributors
+# SPDX-License-Identifier: Apache-2.0
+"""Cameras whose stabilisers follow the body about all axes."""
+
+import numpy as np
+
+from withheld.forms.body import Coupled
+
+
+class FollowsAll(Coupled):
+    """
+    A heavy camera for the pilot on a stabiliser that follows the body about all three axes.
+
+    Its motors pull it to where the body looks, as springs do, and hold against how fast it turns
+    itself by its own gyroscope, not against how fast it turns in its frame: so a long turn takes
+    it along, a short one does not, and it hardly swings. A damper to the sky: D. Karnopp, M. J.
+    Crosby, R. A. Harwood, Vibration control using semi-active force generators, Journal of
+    Engineering for Industry 96(2), 1974; the mode is that of the manuals of such stabilisers.
+    """
+
+    FREQUENCY, DAMPING = 2.0 * np.pi * 2.0, 0.6     # rad/s; of the critical one
+    FINE = 0.005        # s, the steps
+
+    def begin(self, rng):
+        """Start at rest, looking ahead."""
+        self._behind, self._looks, self._rate = np.zeros(3), np.zeros(3), np.zeros(3)
+
+    def wrench(self, now):
+        """Return the moment that the motors leave to the body."""
+        self._rate = now.rate
+        return np.zeros(3), -self.loads * self._turns()
+
+    def after(self, step, rotation, acceleration):
+        """Let it follow."""
+        count = int(np.ceil(step / self.FINE - 1e-9))
+        for _ in range(count):
+            self._looks = self._looks + step / count * self._turns()
+            self._behind = self._behind + step / count * (self._rate - self._looks)
+
+    def _turns(self):
+        """Return the slope (3,) of the camera's rate, rad/s^2."""
+        return self.FREQUENCY * (
+            self.FREQUENCY * self._behind - 2.0 * self.DAMPING * self._looks)
