@@ -560,6 +560,35 @@ class Wand(Influence):
         return out
 
 
+class Pushed(Force):
+    """
+    People who push with a pole now and then, to see whether the controller holds.
+
+    As laboratories show that disturbances are rejected: each push is half a sine of the time,
+    level, in a direction of its own.
+    """
+
+    PAUSE, LASTS, COUNT = (0.8, 2.5), (0.15, 0.45), 60      # s; s; far more than a flight has
+
+    def __init__(self, size, weight, rng):
+        """Take how hard a push is at most, N."""
+        self.most = 0.06 * size * weight
+
+    def begin(self, rng):
+        """Draw when the pushes begin, how long they last, whereto and how hard they are."""
+        self.lasts = rng.uniform(*self.LASTS, self.COUNT)
+        self.begins = np.cumsum(rng.uniform(*self.PAUSE, self.COUNT) + self.lasts) - self.lasts
+        angles = rng.uniform(0.0, 2.0 * np.pi, self.COUNT)
+        level = np.column_stack([np.cos(angles), np.sin(angles), 0.0 * angles])
+        self.pushes = self.most * rng.uniform(0.5, 1.0, (self.COUNT, 1)) * level
+
+    def force(self, time, position, velocity):
+        """Return the force."""
+        last = max(int(np.searchsorted(self.begins, time)) - 1, 0)
+        share = np.clip((time - self.begins[last]) / self.lasts[last], 0.0, 1.0)
+        return np.sin(np.pi * share) * self.pushes[last]
+
+
 class Barometer(Influence):
     """
     A height from a barometer in the flow: the pressure there is not that of air at rest.
@@ -681,4 +710,5 @@ KINDS = {'periodic_force': (Periodic, 'weight'), 'tether': (Tether, 'weight'),
          'sandbag': (Sandbag, 'weight'), 'bent': (Bent, 'rotors', 'weight', 'hover'),
          'turret': (Turret, 'weight', 'radius'), 'roped': (Roped, 'weight'),
          'hoops': (Hoops, 'weight', 'radius', 'hover'), 'wand': (Wand,),
-          'barometer': (Barometer,), 'retractor': (Retractor, 'weight'), 'glitch': (Glitch,)}
+         'pushed': (Pushed, 'weight'), 'barometer': (Barometer,),
+         'retractor': (Retractor, 'weight'), 'glitch': (Glitch,)}

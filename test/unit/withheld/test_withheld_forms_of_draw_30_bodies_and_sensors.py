@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Forms of ordinary loads, rotors and sensors, and two ordinary strangers."""
+"""Forms of ordinary loads, rotors and sensors, and three ordinary strangers."""
 
 from dataclasses import replace
 from types import SimpleNamespace
@@ -331,3 +331,21 @@ def test_a_reflection_draws_places_and_velocities_aside_together_and_lets_them_g
     assert 0.8 * part.far < sizes.max() < 1.6 * part.far
     far_later = part.measured(1e4, STATE, 1.0)
     assert far_later == pytest.approx(STATE) and part.wrench(SimpleNamespace()) is None
+
+
+def test_a_push_is_level_comes_and_goes_and_leaves_long_pauses():
+    part = outside.Pushed(2.0, WEIGHT, np.random.default_rng(1))
+    part.begin(np.random.default_rng(2))
+    t = np.arange(0.0, 20.0, 0.005)
+    forces = np.array([part.force(time, REST, REST) for time in t])
+    size = np.linalg.norm(forces, axis=1)
+    assert not forces[:, 2].any() and 0.5 * part.most < size.max() <= part.most
+    pushed = size > 1e-6 * part.most
+    ends = np.flatnonzero(np.diff(pushed))
+    lasts, pauses = (np.diff(t[ends])[k::2] for k in range(2))
+    assert not pushed[0] and len(lasts) > 5
+    assert lasts.max() < 0.46 and pauses.min() > 0.79
+    # One direction in each push.
+    begin = part.begins[0] + np.array([0.2, 0.5, 0.8]) * part.lasts[0]
+    one = np.array([part.force(time, REST, REST) for time in begin])
+    assert np.linalg.matrix_rank(one, tol=1e-9 * part.most) == 1
