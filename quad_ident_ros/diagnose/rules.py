@@ -133,7 +133,7 @@ class Rules:
     held_block: float = 3.0
     follows: float = 0.5
     voltage: float = 0.02
-    at_bound: float = 1e-3
+    at_bound: float = 1e-2
     coloured: float = 2.0
     levelling: float = 0.015
     tracked_level: float = 0.003

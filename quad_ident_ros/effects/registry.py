@@ -103,6 +103,11 @@ def bounds(vehicle: Vehicle) -> Table:
     return table
 
 
+def fit_bounds(vehicle: Vehicle) -> Table:
+    """Return the bounds within which all parameters are identified, (2, P), SI."""
+    return np.array([parameter.fit_bounds(vehicle) for _, parameter in PARAMETERS]).T
+
+
 def vector(effects: Mapping[str, Mapping[str, float]], vehicle: Vehicle,
            where: str = 'effects') -> Table:
     """

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Steady wind."""
 
+import numpy as np
+
 from quad_ident_ros.compiled import compiled
 from quad_ident_ros.effects.base import Effect, Form, Parameter, Table
 from quad_ident_ros.model.situation import WIND_X, WIND_Y, WIND_Z
@@ -9,6 +11,9 @@ from quad_ident_ros.model.situation import WIND_X, WIND_Y, WIND_Z
 SIZES = {'x': 1.0, 'y': 1.0, 'z': 0.05}
 """Usual sizes, m/s. Over ground, air that moves steadily moves level: its mean rises or sinks by
 some centimetres per second (Kaimal and Finnigan, Atmospheric Boundary Layer Flows, 1994)."""
+MOST = {'x': np.inf, 'y': np.inf, 'z': 1.0}
+"""Of these at most, m/s: what seems to rise or sink faster all along the flights is another force.
+Thermals rise at about 1 m/s (Lenschow and Stephens, Boundary-Layer Meteorology 19, 1980)."""
 
 
 @compiled(fused=True, inlined=True)
@@ -23,9 +28,10 @@ def air(p: Table, k: int, s: Table) -> None:
 FORM = Form(
     name='steady', title='steady wind',
     parameters=tuple(Parameter(axis, 'm/s', -20.0, 20.0, size,
-                               f'velocity of the air along world {axis}')
+                               f'velocity of the air along world {axis}', fitted=MOST[axis])
                      for axis, size in SIZES.items()),
-    source='air velocity = velocity - wind, in everything that depends on it',
+    source='air velocity = velocity - wind, in everything that depends on it; identified with a '
+           'vertical part of 1 m/s at most',
     on_rotors=False,
     air=air, needs_reference=True)
 EFFECT = Effect(

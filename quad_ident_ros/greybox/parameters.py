@@ -116,7 +116,7 @@ def constants_of(z: np.ndarray, vehicle: Vehicle) -> np.ndarray:
 
 @lru_cache(maxsize=8)
 def limits(vehicle: Vehicle) -> np.ndarray:
-    """Return lower bounds, upper bounds and usual sizes (3, Z), SI, not to be written to."""
+    """Return bounds of what is identified and usual sizes (3, Z), SI, not to be written to."""
     constants = vehicle_vector(vehicle)
     arm = vehicle.arm_length
     weight = vehicle.mass * vehicle.gravity
@@ -129,6 +129,7 @@ def limits(vehicle: Vehicle) -> np.ndarray:
     lower[16:] = -upper[16:]    # products of inertia have either sign
     table = np.array([lower, upper, 0.1 * size])
     whole = np.concatenate([table, registry.bounds(vehicle)], axis=1)
+    whole[:2, SPLIT:] = registry.fit_bounds(vehicle)
     whole.flags.writeable = False
     return whole
 

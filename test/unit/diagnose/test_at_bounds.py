@@ -58,6 +58,19 @@ def test_an_effect_that_needs_values_no_vehicle_has_is_not_named():
                for finding in told.findings)
 
 
+@pytest.mark.slow
+def test_air_that_rises_faster_than_steady_air_does_is_no_wind():
+    """It can be simulated, but over ground something else does what it does."""
+    updraft = {'wind': {'z': 3.0}, 'body_drag': {'horizontal': 0.02, 'vertical': 0.02}}
+    flights = [fly_closed_loop(VEHICLE, updraft, path, duration=10.0, rate=100.0, seed=seed,
+                               noise=MOCAP_IMU)
+               for seed, path in enumerate(('figure8', 'lissajous'))]
+    told = diagnose(flights, VEHICLE)
+    row = next(row for row in told.ranking if row.effect == 'wind')
+    assert 'wind' not in told.verdict and told.gap.before['velocity'] > 0.1
+    assert not row.parameters or abs(row.parameters['z'].value) <= 1.0
+
+
 def within_bounds(chosen, column, usual, monkeypatch):
     """Return fitted.within_bounds of a set that wants to have a parameter beyond its bound."""
     z = nominal(VEHICLE)
