@@ -21,7 +21,7 @@ from quad_ident_ros.diagnose.fitted import (
     within_bounds,
 )
 from quad_ident_ros.diagnose.gap import Noise
-from quad_ident_ros.diagnose.noise import noise_in
+from quad_ident_ros.diagnose.noise import noise_in, noise_of
 from quad_ident_ros.diagnose.nuisances import nuisances_of
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.diagnose.selection import Selection
@@ -82,6 +82,17 @@ class Bench:
     selection: Selection
     noise: Noise
     rules: Rules
+
+    @classmethod
+    def of(cls, flights: list, tracks: tuple, vehicle: Vehicle, selection: Selection,
+           rules: Rules) -> 'Bench':
+        """Return the Bench of a Selection, whose best set says what the noise is."""
+        return cls(flights, tracks, vehicle, selection,
+                   noise_of(selection.best.estimate, flights, vehicle, rules), rules)
+
+    def with_selection(self, selection: Selection) -> 'Bench':
+        """Return the Bench of another Selection for the same flights."""
+        return Bench.of(self.flights, self.tracks, self.vehicle, selection, self.rules)
 
     @property
     def horizon(self) -> float:

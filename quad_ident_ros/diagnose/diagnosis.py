@@ -23,7 +23,6 @@ from quad_ident_ros.diagnose.in_simulator import gap_in_simulator, refuse_inerti
 from quad_ident_ros.diagnose.intake import take_in
 from quad_ident_ros.diagnose.judgement import judge, pooled
 from quad_ident_ros.diagnose.like_feedback import is_like_feedback, with_like_feedback
-from quad_ident_ros.diagnose.noise import noise_of
 from quad_ident_ros.diagnose.nuisances import as_data as nuisances_as_data
 from quad_ident_ros.diagnose.nuisances import late_states
 from quad_ident_ros.diagnose.provenance import recorded
@@ -96,14 +95,12 @@ def diagnose(records: Iterable[FlightRecord], vehicle: Vehicle, *,
         intake = intake.shifted(prompt)
         selection = select(intake.flights, vehicle, early, rules,
                            lambda share: told(0.7 + 0.05 * share))
-    noise = noise_of(selection.best.estimate, intake.flights, vehicle, rules)
-    bench = Bench(intake.flights, (*intake.tracks, intake.held_out), vehicle, selection, noise,
-                  rules)
+    bench = Bench.of(intake.flights, (*intake.tracks, intake.held_out), vehicle, selection, rules)
     bench, judged = in_fewest(bench, judge(bench))
-    bench, judged, causes = with_like_feedback(bench, judged, intake, causes,
+    bench, judged, causes = with_like_feedback(bench, judged, causes,
                                                lambda share: told(0.75 + 0.05 * share))
     told(0.8)
-    bench, judged = beside_gusts(bench, judged, intake, causes,
+    bench, judged = beside_gusts(bench, judged, causes,
                                  lambda share: told(0.8 + 0.1 * share))
     selection, noise = bench.selection, bench.noise
     told(0.9)

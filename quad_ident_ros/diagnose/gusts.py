@@ -10,21 +10,18 @@ effects are judged, and remains in the gap, where it is unknown.
 """
 
 from collections.abc import Callable
-from dataclasses import replace
 
 from quad_ident_ros.diagnose.bench import Bench
 from quad_ident_ros.diagnose.candidates import Candidate
-from quad_ident_ros.diagnose.intake import Intake
 from quad_ident_ros.diagnose.judgement import judge, Judgement
 from quad_ident_ros.diagnose.measure import TRANSLATION
-from quad_ident_ros.diagnose.noise import noise_of
 from quad_ident_ros.diagnose.ratios import in_fewest
 from quad_ident_ros.diagnose.select import select
 from quad_ident_ros.effects.registry import GUSTS
 from quad_ident_ros.greybox.flights import inertial
 
 
-def beside_gusts(bench: Bench, judged: Judgement, intake: Intake, causes: tuple[Candidate, ...],
+def beside_gusts(bench: Bench, judged: Judgement, causes: tuple[Candidate, ...],
                  on_progress: Callable[[float], None]) -> tuple[Bench, Judgement]:
     """
     Return a Bench and its Judgement, with gusts where a force is unexplained that these may be.
@@ -32,11 +29,10 @@ def beside_gusts(bench: Bench, judged: Judgement, intake: Intake, causes: tuple[
     The whole search is repeated with gusts among the nuisances. Where its best set has none, all
     stays as it is. Where the force of the air is taken from the records, no gusts act.
     """
-    if inertial(intake.flights) or not {*judged.unexplained} & {*TRANSLATION}:
+    if inertial(bench.flights) or not {*judged.unexplained} & {*TRANSLATION}:
         return bench, judged
-    selection = select(intake.flights, bench.vehicle, causes, bench.rules, on_progress, gusty=True)
+    selection = select(bench.flights, bench.vehicle, causes, bench.rules, on_progress, gusty=True)
     if not any(cause.effect == GUSTS.name for cause in selection.best.chosen):
         return bench, judged
-    beside = replace(bench, selection=selection, noise=noise_of(
-        selection.best.estimate, intake.flights, bench.vehicle, bench.rules))
+    beside = bench.with_selection(selection)
     return in_fewest(beside, judge(beside))

@@ -10,14 +10,11 @@ looked for only where they say that the commands are right.
 """
 
 from collections.abc import Callable
-from dataclasses import replace
 
 from quad_ident_ros.diagnose.bench import Bench
 from quad_ident_ros.diagnose.candidates import Candidate
-from quad_ident_ros.diagnose.intake import Intake
 from quad_ident_ros.diagnose.judgement import judge, Judgement
 from quad_ident_ros.diagnose.measure import ROTATION
-from quad_ident_ros.diagnose.noise import noise_of
 from quad_ident_ros.diagnose.ratios import in_fewest
 from quad_ident_ros.diagnose.select import select
 from quad_ident_ros.effects.registry import EFFECTS
@@ -29,8 +26,8 @@ def is_like_feedback(cause: Candidate) -> bool:
                                    if form.name == cause.form)
 
 
-def with_like_feedback(bench: Bench, judged: Judgement, intake: Intake,
-                       causes: tuple[Candidate, ...], on_progress: Callable[[float], None]
+def with_like_feedback(bench: Bench, judged: Judgement, causes: tuple[Candidate, ...],
+                       on_progress: Callable[[float], None]
                        ) -> tuple[Bench, Judgement, tuple[Candidate, ...]]:
     """
     Return Bench, Judgement and candidates, with forms like feedback where these may be missing.
@@ -46,11 +43,10 @@ def with_like_feedback(bench: Bench, judged: Judgement, intake: Intake,
     if not late or bench.noise.command_errors or not (
             there or {*judged.unexplained} & {*ROTATION}):
         return bench, judged, early
-    selection = select(intake.flights, bench.vehicle, causes, bench.rules, on_progress)
+    selection = select(bench.flights, bench.vehicle, causes, bench.rules, on_progress)
     if not {*selection.best.chosen} & late:
         return bench, judged, early
-    beside = replace(bench, selection=selection, noise=noise_of(
-        selection.best.estimate, intake.flights, bench.vehicle, bench.rules))
+    beside = bench.with_selection(selection)
     beside, again = in_fewest(beside, judge(beside))
     if len(again.model.effects) > len(judged.model.effects) + 1:
         return bench, judged, early

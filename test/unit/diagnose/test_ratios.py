@@ -10,7 +10,6 @@ from quad_ident_ros.diagnose.bench import Bench
 from quad_ident_ros.diagnose.candidates import candidates
 from quad_ident_ros.diagnose.intake import take_in
 from quad_ident_ros.diagnose.judgement import judge
-from quad_ident_ros.diagnose.noise import noise_of
 from quad_ident_ros.diagnose.ratios import in_fewest
 from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.diagnose.select import _Search
@@ -40,8 +39,7 @@ def found_beside(effects, ratio, vehicle=VEHICLE):
     search.try_other_ratios(chosen)
     search.best = search.judge(chosen)
     selection = search.selection()
-    bench = Bench(intake.flights, (*intake.tracks, intake.held_out), vehicle, selection,
-                  noise_of(selection.best.estimate, intake.flights, vehicle, RULES), RULES)
+    bench = Bench.of(intake.flights, (*intake.tracks, intake.held_out), vehicle, selection, RULES)
     return bench, judge(bench)
 
 
