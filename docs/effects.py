@@ -57,8 +57,14 @@ def parameters_table():
                 whose = f'`{effect.name}`' if k == 0 and form is effect.forms[0] else ''
                 lines.append(f'| {whose} | {f"`{form.name}`" if k == 0 else ""} | {name} | '
                              f'{parameter.unit} | {parameter.null:g} | {parameter.lower:g} to '
-                             f'{parameter.upper:g} | {parameter.size:g} | {what} |')
+                             f'{parameter.upper:g}{_identified(parameter)} | '
+                             f'{parameter.size:g} | {what} |')
     return '\n'.join(lines)
+
+
+def _identified(parameter):
+    most = parameter.identified
+    return '' if np.isinf(most) else f'; identified {-most:g} to {most:g}'
 
 
 def _escaped(text):

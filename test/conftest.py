@@ -9,6 +9,10 @@ import re
 from hypothesis import settings
 import pytest
 
+from quad_ident_ros.linear_algebra_threads import use_one
+
+use_one()    # there are as many processes as cores
+
 settings.register_profile('same', derandomize=True)
 settings.register_profile('explore', print_blob=True)   # pytest --hypothesis-profile=explore
 settings.load_profile('same')

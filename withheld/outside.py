@@ -593,10 +593,10 @@ class Barometer(Influence):
     """
     A height from a barometer in the flow: the pressure there is not that of air at rest.
 
-    It is off by a share of the dynamic pressure, another one for each side that the flow comes
-    from; the estimator follows in a moment, and so its climb is off as well. As PX4 makes up for
-    (EKF2_PCOEF_XP and others); W. Gracey, Measurement of Aircraft Speed and Altitude, NASA
-    Reference Publication 1046, 1980.
+    In air that does not move, it is off by a share of the dynamic pressure, another one for each
+    side that the flow comes from; the estimator follows in a moment, and so its climb is off as
+    well. As PX4 makes up for (EKF2_PCOEF_XP and others); W. Gracey, Measurement of Aircraft Speed
+    and Altitude, NASA Reference Publication 1046, 1980.
     """
 
     TIME = 0.15                 # s, in which the estimator follows

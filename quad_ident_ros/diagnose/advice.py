@@ -57,13 +57,18 @@ def at_bounds(judged: Judgement, vehicle: Vehicle, rules: Rules) -> tuple[dict, 
         so = ('; it stays in the model in its place and is not named'
               if cause in judged.stand_ins else '')
         if names:
+            whose, such, remedy = (
+                ('vehicles have', 'commands that are logged more slowly than they are given',
+                 AT_THE_RATE) if not EFFECTS[cause.effect].needs_air else
+                ('steady air over ground has', 'another force along it, or positions with a '
+                 'wrong scale', 'check the scale and the level of the positions'))
             rows.append({
                 'flight': 'all flights', 'code': 'at_bound', 'severity': 'warning',
                 'where': cause.effect,
-                'message': f'{", ".join(names)} is the bound of what vehicles have, and the best '
-                           'value lies beyond it: the effect may stand in for another cause, such '
-                           f'as commands that are logged more slowly than they are given{so}',
-                'remedy': AT_THE_RATE})
+                'message': f'{", ".join(names)} is the bound of what {whose}, and the best value '
+                           f'lies beyond it: the effect may stand in for another cause, such as '
+                           f'{such}{so}',
+                'remedy': remedy})
     return tuple(rows)
 
 

@@ -157,10 +157,9 @@ def columns_at_bounds(cause: Candidate, z: np.ndarray, vehicle: Vehicle, rules: 
                       ) -> list[int]:
     """Return the columns of an effect that are at a bound in z (Z,), but for that of no effect."""
     null, (lower, upper, size) = nominal(vehicle), limits(vehicle)
-    # A vehicle file may have an effect that the vehicle has not: that is no bound of vehicles.
     none = np.append(null[:SPLIT], NULL)
-    gone = (null != none) & (lower == none)
-    room = np.minimum(np.where(gone, np.inf, z - lower), upper - z)
+    room = np.minimum(np.where(lower == none, np.inf, z - lower),
+                      np.where(upper == none, np.inf, upper - z))
     return [column for column in cause.columns
             if z[column] != null[column] and room[column] < rules.at_bound * size[column]]
 

@@ -33,8 +33,9 @@ class Parameter:
     shapes a form (a length, an exponent) has no effect while the form's strength is null. gain:
     the power of it by which the answer to commands about the axis of excited_by grows. beside:
     the vector of the vehicle file and the axis that it adds to: their sum is not negative. later:
-    how many s later, for each unit of it, the vehicle answers commands that change evenly. fitted:
-    how large it is at most where it is identified, which may be less than a simulation can have.
+    how many s later, for each unit of it, the vehicle answers commands that change evenly.
+    identified: the largest value, of either sign, that flights can show: a simulation may have
+    more.
     """
 
     name: str
@@ -48,7 +49,7 @@ class Parameter:
     gain: Literal[-1, 0, 1] = 0
     beside: tuple[Literal['linear_drag'], int] | None = None
     later: float = 0.0
-    fitted: float = np.inf
+    identified: float = np.inf
 
     def scale(self, vehicle: Vehicle) -> float:
         """Return the vehicle's own measure of this parameter's unit: its mass, arm or inertia."""
@@ -69,7 +70,7 @@ class Parameter:
 
     def fit_bounds(self, vehicle: Vehicle) -> tuple[float, float]:
         """Return the lower and the upper bound where it is identified for a vehicle, SI."""
-        (lower, upper, _), most = self.bounds(vehicle), self.fitted * self.scale(vehicle)
+        (lower, upper, _), most = self.bounds(vehicle), self.identified * self.scale(vehicle)
         return max(lower, -most), min(upper, most)
 
 

@@ -12,8 +12,8 @@ SIZES = {'x': 1.0, 'y': 1.0, 'z': 0.05}
 """Usual sizes, m/s. Over ground, air that moves steadily moves level: its mean rises or sinks by
 some centimetres per second (Kaimal and Finnigan, Atmospheric Boundary Layer Flows, 1994)."""
 MOST = {'x': np.inf, 'y': np.inf, 'z': 1.0}
-"""Of these at most, m/s: what seems to rise or sink faster all along the flights is another force.
-Thermals rise at about 1 m/s (Lenschow and Stephens, Boundary-Layer Meteorology 19, 1980)."""
+"""Largest values identified, m/s: what seems to rise or sink faster all along flights is another
+force. Thermals rise at about 1 m/s (Lenschow, Stephens, Boundary-Layer Meteorology 19, 1980)."""
 
 
 @compiled(fused=True, inlined=True)
@@ -28,7 +28,7 @@ def air(p: Table, k: int, s: Table) -> None:
 FORM = Form(
     name='steady', title='steady wind',
     parameters=tuple(Parameter(axis, 'm/s', -20.0, 20.0, size,
-                               f'velocity of the air along world {axis}', fitted=MOST[axis])
+                               f'velocity of the air along world {axis}', identified=MOST[axis])
                      for axis, size in SIZES.items()),
     source='air velocity = velocity - wind, in everything that depends on it; identified with a '
            'vertical part of 1 m/s at most',

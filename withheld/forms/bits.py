@@ -1,6 +1,6 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Rates that are sent in a byte each."""
+"""Rates in coarse steps."""
 
 import numpy as np
 
@@ -9,7 +9,7 @@ from withheld.influence import Influence
 
 class CutOff(Influence):
     """
-    Rates that a radio sends in a byte each, and that are cut off to the step below, not rounded.
+    Rates that are cut off to the step below, not rounded, before they are smoothed.
 
     As a shift of bits does, which rounds towards less, also below zero: so each axis is off by
     half a step on average, by nothing at a step, and by a whole one just below the next. B.
@@ -22,7 +22,7 @@ class CutOff(Influence):
         self.parameters = dict.fromkeys('xyz', -0.5 * self.step)
 
     def measured(self, time, state, thrust):
-        """Return what is received."""
+        """Return what is left of them."""
         out = state.copy()
         if self.step:
             out[10:] = self.step * np.floor(state[10:] / self.step)

@@ -10,7 +10,7 @@ from withheld.influence import Influence
 
 class Drizzled(Influence):
     """
-    Drizzle in squalls: water lies on the vehicle, more of it after fast flight, and runs off.
+    Drizzle in showers: water lies on the vehicle, more of it after fast flight, and runs off.
 
     What comes falls on it from above, and meets its front by the speed: A. De Angelis, Is it
     really worth running in the rain?, European Journal of Physics 8(3), 1987. As large a share of

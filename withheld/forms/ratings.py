@@ -32,3 +32,5 @@ class ByRating(Influence):
         """Return the factors: the speed and what it takes make up the speed of the rating."""
         rated = np.maximum(now.speeds / self.hover, self.SLOWEST)
         return (2.0 / (1.0 + np.sqrt(1.0 + 4.0 * self.droops * rated))) ** 2
+
+    torque = gain

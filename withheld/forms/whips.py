@@ -11,7 +11,7 @@ class BendingAerials(Drag):
     """
     A body with soft aerials, upward and downward, which level flow bends: the faster, the more.
 
-    What stands out falls with the power 2/3 of the velocity once they bend, so that their drag
+    What stands out falls as the velocity to the power -2/3 once they bend, so that their drag
     grows with the power 4/3: S. Alben, M. Shelley, J. Zhang, Drag reduction through self-similar
     bending of a flexible body, Nature 420, 2002. A climb flows along them; the rest of the body
     has the square. As many are above the centre as below, so that they do not turn the body.

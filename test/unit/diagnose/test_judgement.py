@@ -30,7 +30,6 @@ from quad_ident_ros.diagnose.judgement import (
     stability,
     unexplained,
 )
-from quad_ident_ros.diagnose.noise import noise_of
 from quad_ident_ros.diagnose.priors import EffectPrior
 from quad_ident_ros.diagnose.probability import Support
 from quad_ident_ros.diagnose.rules import RULES
@@ -300,8 +299,7 @@ def test_what_a_flight_has_by_itself_stays_when_effects_are_taken_out_and_flight
                for seed, factor in enumerate((1.06, 0.94, 1.0))]
     intake = take_in(records, vehicle, None, RULES)
     selection = select(intake.flights, vehicle, candidates(intake.flights, vehicle, RULES), RULES)
-    bench = Bench(intake.flights, (*intake.tracks, intake.held_out), vehicle, selection,
-                  noise_of(selection.best.estimate, intake.flights, intake.vehicle, RULES), RULES)
+    bench = Bench.of(intake.flights, (*intake.tracks, intake.held_out), vehicle, selection, RULES)
     model = bench.model(selection.best.chosen, selection.best.estimate)
     assert {cause.effect for cause in model.effects} == {'gyro_bias', 'motor_lag'}
     removed = tuple(cause for cause in model.effects if cause.effect == 'gyro_bias')
@@ -354,8 +352,7 @@ def test_what_flights_share_by_chance_is_their_own_where_no_effect_is_there():
                for seed, (x, y) in enumerate(((0.9, 0.1), (0.9, 0.24), (-0.3, 0.9)))]
     intake = take_in(records, vehicle, None, RULES)
     selection = select(intake.flights, vehicle, candidates(intake.flights, vehicle, RULES), RULES)
-    bench = Bench(intake.flights, (*intake.tracks, intake.held_out), vehicle, selection,
-                  noise_of(selection.best.estimate, intake.flights, intake.vehicle, RULES), RULES)
+    bench = Bench.of(intake.flights, (*intake.tracks, intake.held_out), vehicle, selection, RULES)
     model = bench.model(selection.best.chosen, selection.best.estimate)
     [wind] = [cause for cause in model.effects if cause.effect == 'wind']
     column = INDEX['wind.x']
