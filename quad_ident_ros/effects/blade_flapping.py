@@ -8,7 +8,7 @@ from quad_ident_ros.effects import (
     blade_flapping_drag_point,
 )
 from quad_ident_ros.effects.base import Effect, Form, Parameter
-from quad_ident_ros.effects.hub_moment import wrench
+from quad_ident_ros.effects.hub_moment import SAME_MOTION, SEPARATED_BY, wrench
 
 FORM = Form(
     name='hub_moment', title='moment at each rotor',
@@ -17,7 +17,8 @@ FORM = Form(
                           excited_by='horizontal'),),
     source='moment -c (speed / sum of hover speeds) v x z at each rotor; Pounds, Mahony, Corke, '
            'Control Engineering Practice 18, 2010',
-    wrench=wrench, needs_reference=True)
+    wrench=wrench, needs_reference=True, same_motion=SAME_MOTION,
+    separated_by=SEPARATED_BY)
 EFFECT = Effect(
     name='blade_flapping', title='blade flapping',
     forms=(FORM, blade_flapping_damping.FORM, blade_flapping_drag_centre.FORM,

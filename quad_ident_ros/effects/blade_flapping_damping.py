@@ -28,4 +28,5 @@ FORM = Form(
     source='moment of hub_moment, and -rate_damping (p, q, 0): the disks lag behind a body that '
            'turns; Pounds, Mahony, Corke, Control Engineering Practice 18, 2010',
     # The damping alone would show in a gyro, but beside it the moment by the velocity would not.
-    wrench=wrench, needs_reference=True)
+    wrench=wrench, needs_reference=True, same_motion=hub_moment.SAME_MOTION,
+    separated_by=hub_moment.SEPARATED_BY)

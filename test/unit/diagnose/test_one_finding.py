@@ -62,6 +62,14 @@ def test_momentum_that_remains_in_hover_may_be_that_of_a_wheel_on_board():
 
 
 @pytest.mark.slow
+def test_a_moment_that_goes_with_the_speed_may_come_of_a_wake():
+    found = diagnosed({'blade_flapping': {'coefficient': 0.005}})
+    assert found.verdict == ('blade_flapping',)
+    [line] = one_finding_lines(found)
+    assert 'in the wake of those in front' in line and 'stiffer propellers' in line
+
+
+@pytest.mark.slow
 def test_rotors_that_are_alike_are_told_as_such():
     found = diagnosed({'rotor_gyro': {'rotor_inertia': 1.5e-5}})
     assert found.verdict == ('rotor_gyro',) and found.ranking[0].form == 'momentum'
