@@ -33,7 +33,7 @@ class TwoPitches(Thrust):
         self.pitches = 0.5 * (low + high) + 0.5 * (high - low) * ends
 
     def thrust(self, turn, climb, across):
-        """Return thrust (n,) over that of hover; velocities are over the induced one there."""
+        """Return that of each rotor over its own in hover, (n,); velocities over the induced one."""
         slope, flow = turn / (self.pitches - 1.0), turn.copy()
         for _ in range(self.ROUNDS):
             total = np.sqrt(across ** 2 + (climb + flow) ** 2)
