@@ -33,7 +33,7 @@ class TwoPitches(Thrust):
         self.pitches = 0.5 * (low + high) + 0.5 * (high - low) * ends
 
     def thrust(self, turn, climb, across):
-        """Return that of each rotor over its own in hover, (n,); velocities over the induced one."""
+        """Return thrusts, (n,), each over that in hover; velocities over the induced one there."""
         slope, flow = turn / (self.pitches - 1.0), turn.copy()
         for _ in range(self.ROUNDS):
             total = np.sqrt(across ** 2 + (climb + flow) ** 2)
