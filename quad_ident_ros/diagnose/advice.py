@@ -14,9 +14,9 @@ from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.diagnose.selection import Selection
 from quad_ident_ros.diagnose.verdict import Verdict
 from quad_ident_ros.effects.base import Effect, Form
-from quad_ident_ros.effects.registry import EFFECTS
+from quad_ident_ros.effects.registry import EFFECTS, PARAMETERS
 from quad_ident_ros.greybox.flights import Flight, inertial, RATE
-from quad_ident_ros.greybox.parameters import NAMES
+from quad_ident_ros.greybox.parameters import NAMES, SPLIT
 from quad_ident_ros.model.vehicle import Vehicle
 
 AT_THE_RATE = 'log commands at the rate of the controller, and measure the constant'
@@ -52,7 +52,8 @@ def at_bounds(judged: Judgement, vehicle: Vehicle, rules: Rules) -> tuple[dict, 
     """Return warnings on parameters of a model that end at bounds, as data of findings."""
     rows, z = [], judged.model.z
     for cause in judged.model.effects:
-        names = [f'{NAMES[column].split(".")[1]} {z[column]:.3g}'
+        names = [f'{NAMES[column].split(".")[1]} {z[column]:.3g} '
+                 f'{PARAMETERS[column - SPLIT][1].unit}'.removesuffix(' 1')
                  for column in columns_at_bounds(cause, z, vehicle, rules)]
         so = ('; it stays in the model in its place and is not named'
               if cause in judged.stand_ins else '')
@@ -60,8 +61,8 @@ def at_bounds(judged: Judgement, vehicle: Vehicle, rules: Rules) -> tuple[dict, 
             whose, such, remedy = (
                 ('vehicles have', 'commands that are logged more slowly than they are given',
                  AT_THE_RATE) if not EFFECTS[cause.effect].needs_air else
-                ('steady air over ground has', 'another force along it, or positions with a '
-                 'wrong scale', 'check the scale and the level of the positions'))
+                ('steady air over ground has', 'another vertical force, or positions with a wrong '
+                 'scale', 'check the scale and the level of the positions'))
             rows.append({
                 'flight': 'all flights', 'code': 'at_bound', 'severity': 'warning',
                 'where': cause.effect,

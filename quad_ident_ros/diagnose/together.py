@@ -8,6 +8,7 @@ import numpy as np
 import scipy
 
 from quad_ident_ros.diagnose.bench import Bench, given, Model
+from quad_ident_ros.diagnose.fitted import columns_at_bounds
 from quad_ident_ros.greybox.parameters import NAMES
 from quad_ident_ros.model.covariance import Covariance, covariance_of_matrix
 
@@ -17,10 +18,11 @@ def known_together(bench: Bench, model: Model, probability: Mapping[str, float]
     """
     Return the Covariance of a Model's columns, and of constants whose file states a deviation.
 
-    None where there is neither. The correlation is that of the Joint of the best set, or that by
-    the noise of a model which has other forms; deviations are the reported standard errors, but
-    for constants without a stated deviation: the vehicle of this covariance has them as they are.
-    probability {effect: of being present}, of those that the model has not.
+    None where there is neither; without those that end at a bound. The correlation is that of the
+    Joint of the best set, or that by the noise of a model which has other forms; deviations are
+    the reported standard errors, but for constants without a stated deviation: the vehicle of this
+    covariance has them as they are. probability {effect: of being present}, of those that the
+    model has not.
     """
     best, joint = bench.selection.best.estimate, bench.selection.joint
     columns, constants = model.estimate.columns, joint.constants
@@ -44,4 +46,11 @@ def known_together(bench: Bench, model: Model, probability: Mapping[str, float]
                                         joint.stated[first:, first:])
     shift = bench.shift_by_absent(model, probability)
     whole[:len(columns), :len(columns)] += np.outer(shift, shift)
-    return covariance_of_matrix((*(NAMES[column] for column in columns), *constants), whole)
+    # What ends at a bound is no estimate.
+    held = {column for cause in model.effects
+            for column in columns_at_bounds(cause, model.z, bench.vehicle, bench.rules)}
+    kept = [place for place in range(len(whole)) if not {*columns[place:place + 1]} & held]
+    if not kept:
+        return None
+    names = np.array([*(NAMES[column] for column in columns), *constants])
+    return covariance_of_matrix(tuple(names[kept].tolist()), whole[np.ix_(kept, kept)])

@@ -34,8 +34,8 @@ class Parameter:
     the power of it by which the answer to commands about the axis of excited_by grows. beside:
     the vector of the vehicle file and the axis that it adds to: their sum is not negative. later:
     how many s later, for each unit of it, the vehicle answers commands that change evenly.
-    identified: the largest value, of either sign, that flights can show: a simulation may have
-    more.
+    identified: how far from none, or from what the vehicle file has, flights can show it to be: a
+    simulation may have more.
     """
 
     name: str
@@ -68,10 +68,11 @@ class Parameter:
         given = getattr(vehicle, self.beside[0])[self.beside[1]] if self.beside else 0.0
         return self.lower * scale - given, self.upper * scale, self.size * scale
 
-    def fit_bounds(self, vehicle: Vehicle) -> tuple[float, float]:
-        """Return the lower and the upper bound where it is identified for a vehicle, SI."""
+    def fit_bounds(self, vehicle: Vehicle, given: float) -> tuple[float, float]:
+        """Return bounds of what is identified for a vehicle whose file has a given value, SI."""
         (lower, upper, _), most = self.bounds(vehicle), self.identified * self.scale(vehicle)
-        return max(lower, -most), min(upper, most)
+        return (max(lower, min(self.null, given) - most),
+                min(upper, max(self.null, given) + most))
 
 
 @dataclass(frozen=True)

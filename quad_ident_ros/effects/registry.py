@@ -105,7 +105,9 @@ def bounds(vehicle: Vehicle) -> Table:
 
 def fit_bounds(vehicle: Vehicle) -> Table:
     """Return the bounds within which all parameters are identified, (2, P), SI."""
-    return np.array([parameter.fit_bounds(vehicle) for _, parameter in PARAMETERS]).T
+    given = vector(vehicle.effects, vehicle)
+    return np.array([parameter.fit_bounds(vehicle, value)
+                     for (_, parameter), value in zip(PARAMETERS, given, strict=True)]).T
 
 
 def vector(effects: Mapping[str, Mapping[str, float]], vehicle: Vehicle,
@@ -153,6 +155,9 @@ def from_entries(entries: Iterable[str], start: Mapping[str, Mapping[str, float]
     for entry in entries:
         name, colon, rest = entry.partition(':')
         parameter, sign, value = rest.partition('=')
+        if '=' in value:
+            raise InputError(f'{where} {entry}: one parameter at a time; repeat {where} for '
+                             'each of them')
         if not (colon and sign):
             raise InputError(f'{where} {entry}: expected NAME:PARAMETER=VALUE, for example '
                              'rotor_drag:coefficient=0.1')

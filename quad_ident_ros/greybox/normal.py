@@ -13,6 +13,7 @@ from quad_ident_ros.greybox.linear import Linear
 from quad_ident_ros.greybox.nuisances import Layout
 
 WEAK = 1e-7         # of the largest information: a direction that says nothing
+LEAST = 1e-6        # information, in usual sizes: what is known to a thousand of them is not known
 CHANCE = 0.01       # that white noise is taken for autocorrelated noise
 BLOCK = 2.0         # s over which residuals may be autocorrelated
 
@@ -100,7 +101,7 @@ def solve(information: np.ndarray, gradient: np.ndarray, size: np.ndarray) -> np
     """Return the step (C,) that the information supports; where it says nothing, none."""
     scaled = information * np.outer(size, size)
     values, vectors = np.linalg.eigh(scaled)
-    kept = values > WEAK * max(values.max(initial=0.0), 1e-300)
+    kept = values > max(WEAK * values.max(initial=0.0), LEAST)
     along = vectors.T @ (gradient * size)
     return size * (vectors[:, kept] @ (along[kept] / values[kept]))
 

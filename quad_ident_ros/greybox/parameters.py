@@ -129,10 +129,7 @@ def limits(vehicle: Vehicle) -> np.ndarray:
     lower[16:] = -upper[16:]    # products of inertia have either sign
     table = np.array([lower, upper, 0.1 * size])
     whole = np.concatenate([table, registry.bounds(vehicle)], axis=1)
-    # What the file has is within them, however large.
-    lower, upper = registry.fit_bounds(vehicle)
-    given = registry.vector(vehicle.effects, vehicle)
-    whole[0, SPLIT:], whole[1, SPLIT:] = np.minimum(lower, given), np.maximum(upper, given)
+    whole[:2, SPLIT:] = registry.fit_bounds(vehicle)
     whole.flags.writeable = False
     return whole
 

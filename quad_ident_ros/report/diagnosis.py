@@ -172,8 +172,8 @@ def one_finding_lines(found: Diagnosis) -> list[str]:
     lines = []
     for row in found.one_finding:
         may_be = ', '.join(' or '.join(names) for names in row['may_be'])
-        lines.append(f'{titled(row["effect"])} could also be another cause of the same motion'
-                     + (f' ({may_be})' if may_be else '')
+        lines.append(f'{titled(row["effect"])}: the same motion comes of '
+                     + (may_be or 'another cause')
                      + f'; what distinguishes them: {row["tells"]}')
     return lines
 

@@ -77,7 +77,9 @@ def test_only_air_may_move_faster_in_a_simulation_than_flights_can_show():
     # What a file has is within, so that nothing takes it away.
     updraft = replace(VEHICLE, effects={'wind': {'x': 0.0, 'y': 0.0, 'z': 3.0}})
     z, (lower, upper, _) = nominal(updraft), limits(updraft)
-    assert z[INDEX['wind.z']] == 3.0 and np.all((lower <= z) & (z <= upper))
+    column = INDEX['wind.z']
+    assert z[column] == 3.0 and np.all((lower <= z) & (z <= upper))
+    assert (lower[column], upper[column]) == (-1.0, 4.0)
 
 
 @pytest.mark.slow

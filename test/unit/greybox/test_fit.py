@@ -17,7 +17,7 @@ from quad_ident_ros.data.quality import Finding, findings
 from quad_ident_ros.data.record import FlightRecord
 from quad_ident_ros.errors import InputError
 from quad_ident_ros.flight.fly import fly_closed_loop
-from quad_ident_ros.flight.measure import Noise, Sensors
+from quad_ident_ros.flight.measure import Noise, SENSORS, Sensors
 from quad_ident_ros.greybox.cautions import cautions
 from quad_ident_ros.greybox.errors import difference, ERRORS, moved
 from quad_ident_ros.greybox.fit import as_data, fit, fitted_vehicle
@@ -175,6 +175,16 @@ def test_what_a_hover_does_not_show_is_undetermined_and_stays():
         assert any(name in line for line in found.findings)
     vehicle = fitted_vehicle(found)
     assert vehicle.rotational_drag == pytest.approx((0.0, 0.0, 0.0), abs=1e-9)
+
+
+def test_wind_without_a_drag_by_which_it_acts_is_undetermined():
+    """Rounding alone is left of the slopes, and leads nowhere."""
+    vehicle = load_vehicle('hummingbird')
+    flight = fly_closed_loop(vehicle, {}, 'lissajous', duration=6.0, seed=1,
+                             noise=SENSORS['mocap_imu'])
+    found = fit([flight], vehicle, ['wind'])
+    assert {parameter.status for parameter in found.parameters} == {'undetermined'}
+    assert not fitted_vehicle(found).effects
 
 
 def test_a_parameter_that_no_flight_shows_is_alone_undetermined():

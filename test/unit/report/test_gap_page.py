@@ -171,8 +171,8 @@ SAID = ('also present, but closing less than 5 %: lag of the motors (motor_lag),
         "also present, but closing no more than the other effects' errors of form could: inflow "
         'and translational lift (inflow), 30.0 %, probability 0.90',
         'unexplained: Fz, height under 0.66 m, 0.03 N rms, 0.2 to 1.2 Hz',
-        'error in inertia (inertia_mismatch) could also be another cause of the same motion '
-        '(inertia about z or torque coefficient); what distinguishes them: a ruler',
+        'error in inertia (inertia_mismatch): the same motion comes of inertia about z or torque '
+        'coefficient; what distinguishes them: a ruler',
         'payload differs from the other flights; gap over that of the noise: velocity 14.2',
         'estimated per flight, not reported as effects:',
         'clock_offset (how late), s: 0.01; 0.02; held out 0.03',
