@@ -52,17 +52,18 @@ def at_bounds(judged: Judgement, vehicle: Vehicle, rules: Rules) -> tuple[dict, 
     """Return warnings on parameters of a model that end at bounds, as data of findings."""
     rows, z = [], judged.model.z
     for cause in judged.model.effects:
-        names = [f'{NAMES[column].split(".")[1]} {z[column]:.3g} '
-                 f'{PARAMETERS[column - SPLIT][1].unit}'.removesuffix(' 1')
-                 for column in columns_at_bounds(cause, z, vehicle, rules)]
+        held = {PARAMETERS[column - SPLIT][1]: z[column]
+                for column in columns_at_bounds(cause, z, vehicle, rules)}
+        names = [f'{one.name} {value:.3g}{"" if one.unit == "1" else f" {one.unit}"}'
+                 for one, value in held.items()]
         so = ('; it stays in the model in its place and is not named'
               if cause in judged.stand_ins else '')
         if names:
             whose, such, remedy = (
                 ('vehicles have', 'commands that are logged more slowly than they are given',
                  AT_THE_RATE) if not EFFECTS[cause.effect].needs_air else
-                ('steady air over ground has', 'another vertical force, or positions with a wrong '
-                 'scale', 'check the scale and the level of the positions'))
+                ('steady air over ground has', 'another force, or positions with a wrong scale',
+                 'check the scale and the level of the positions'))
             rows.append({
                 'flight': 'all flights', 'code': 'at_bound', 'severity': 'warning',
                 'where': cause.effect,

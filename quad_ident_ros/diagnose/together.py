@@ -49,8 +49,7 @@ def known_together(bench: Bench, model: Model, probability: Mapping[str, float]
     # What ends at a bound is no estimate.
     held = {column for cause in model.effects
             for column in columns_at_bounds(cause, model.z, bench.vehicle, bench.rules)}
-    kept = [place for place in range(len(whole)) if not {*columns[place:place + 1]} & held]
-    if not kept:
-        return None
-    names = np.array([*(NAMES[column] for column in columns), *constants])
-    return covariance_of_matrix(tuple(names[kept].tolist()), whole[np.ix_(kept, kept)])
+    kept = [place for place, column in enumerate(columns) if column not in held]
+    names = (*(NAMES[columns[place]] for place in kept), *constants)
+    places = [*kept, *range(len(columns), len(whole))]
+    return covariance_of_matrix(names, whole[np.ix_(places, places)]) if names else None

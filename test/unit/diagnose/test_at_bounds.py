@@ -58,6 +58,10 @@ def test_an_effect_that_needs_values_no_vehicle_has_is_not_named():
     assert row.probability == RULES.prior_probability
     assert any(finding['code'] == 'at_bound' and 'not named' in finding['message']
                for finding in told.findings)
+    # A value that ends at its bound is no estimate, and nothing to draw others around.
+    held = {f'inertia_mismatch.{name}' for name, one in row.parameters.items()
+            if one.value in limits(told.vehicle)[1]}
+    assert held and not held & {*(told.covariance.names if told.covariance else ())}
 
 
 def test_the_bound_of_no_effect_is_none_however_near():

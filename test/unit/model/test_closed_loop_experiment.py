@@ -103,6 +103,7 @@ def test_effects_go_over_those_of_the_vehicle(load):
 @pytest.mark.parametrize('entry, said', [
     ('rotor_drag', 'expected NAME:PARAMETER=VALUE'),
     ('rotor_drag=0.2', 'expected NAME:PARAMETER=VALUE'),
+    ('wind:x=2,z=0.5', 'one parameter at a time; repeat here'),
     ('rotor_drg:coefficient=0.2', "did you mean 'rotor_drag'"),
     ('rotor_drag:coeficient=0.2', "did you mean 'coefficient'"),
     ('rotor_drag:coefficient=much', "expected a number, got 'much'"),
