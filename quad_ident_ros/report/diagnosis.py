@@ -283,11 +283,16 @@ def caution_lines(found: Diagnosis) -> list[str]:
                  NUMBER.sub('#', one['message']))
         said[one['flight'], words] += 1
         alike.setdefault((words, said[one['flight'], words]), []).append(one)
-    lines = [f'{"" if first.get("severity") == "info" else "warning: "}{first["flight"]}'
-             + (f' ({", ".join(one["flight"] for one in others)} alike)' if others else '')
-             + f': {titled(first["where"])}: {first["message"]}'
+    lines = [_said(first, [one['flight'] for one in others])
              for first, *others in alike.values()]
     return [*(farther if found.gap.closed < 0.0 else []), *_of_simulator(found), *lines]
+
+
+def _said(finding: dict, alike: list[str]) -> str:
+    """Return a finding as a line, a warning with its remedy; alike: flights that have it, too."""
+    others = f' ({", ".join(alike)} alike)' if alike else ''
+    said = f'{finding["flight"]}{others}: {titled(finding["where"])}: {finding["message"]}'
+    return said if finding['severity'] == 'info' else f'warning: {said}; {finding["remedy"]}'
 
 
 def _of_simulator(found: Diagnosis) -> list[str]:

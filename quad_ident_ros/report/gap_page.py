@@ -206,9 +206,9 @@ def _provenance(found: Diagnosis) -> list:
         parts.append(table(['flight', 'duration, s', 'rate, Hz', 'samples', 'findings'], rows,
                            caption='Flights as recorded'))
     if found.findings:
-        parts.append(table(['flight', 'where', 'finding'], [
-            [one['flight'], _prose(titled(one['where'])), _prose(one['message'])]
-            for one in found.findings], ('text', 'text', 'text'), caption='Findings'))
+        parts.append(table(['flight', 'where', 'finding', 'what to do'], [
+            [one['flight'], *map(_prose, (titled(one['where']), one['message'], one['remedy']))]
+            for one in found.findings], ('text',) * 4, caption='Findings'))
     if run:
         parts.append(table(['file', 'SHA-256'], [
             [path, Markup(f'<td class="prose"><code>{whole}</code></td>')]

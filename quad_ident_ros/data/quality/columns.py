@@ -66,7 +66,7 @@ def differentiated(record: FlightRecord, vehicle: Vehicle | None) -> list[Findin
     for group in groups:
         where, pose = pairs[group]
         why = (f'differences of {pose} from one row to the next, which turn a little noise into '
-               'a lot' if group in rough else 'not recorded')
+               'a lot' if group in rough else 'not recorded, or not in all components')
         found.append(Finding(
             'differentiated', 'info', where,
             f'{why}; diagnose and fit take the {group} from {pose}, by cubics over '

@@ -164,7 +164,8 @@ OPEN = {
                       FlightCheck('payload', {'velocity': 14.2}, True)),
     'nuisances': {'clock_offset': {'what': 'how late', 'unit': 's', 'values': [[0.01], [0.02]],
                                    'held_out': [0.03], 'hidden_delay': 0.014}},
-    'findings': ({'flight': 'monday', 'code': 'gap', 'where': 'rows', 'message': 'are lost'},),
+    'findings': ({'flight': 'monday', 'code': 'gap', 'severity': 'warning', 'where': 'rows',
+                  'message': 'are lost', 'remedy': 'record again'},),
     'not_shown': ('ground_effect',)}
 SAID = ('also present, but closing less than 5 %: lag of the motors (motor_lag), 1.2 %, '
         'probability 0.98',
@@ -178,7 +179,7 @@ SAID = ('also present, but closing less than 5 %: lag of the motors (motor_lag),
         'clock_offset (how late), s: 0.01; 0.02; held out 0.03',
         'a delay common to all flights of up to 14 ms cannot be distinguished from clock offsets',
         'would not show at their usual size: ground effect (ground_effect)',
-        'warning: monday: rows: are lost')
+        'warning: monday: rows: are lost; record again')
 
 
 def test_what_remains_open_is_said_in_the_terminal(terminal):
@@ -261,7 +262,7 @@ def test_no_color_prints_no_codes(found, monkeypatch, value, coded):
 def finding(flight, message):
     """Return a finding on the commands of a flight."""
     return {'flight': flight, 'code': 'commands', 'severity': 'info', 'where': 'file',
-            'message': message}
+            'message': message, 'remedy': ''}
 
 
 def test_each_finding_on_a_flight_is_told_and_equal_ones_of_several_flights_once(found):

@@ -85,9 +85,10 @@ def test_what_fit_can_free(capsys):
 def test_warnings_of_a_diagnosis():
     found = diagnosis(findings=(
         {'flight': 'all flights', 'code': 'at_bound', 'severity': 'warning',
-         'where': 'inertia_mismatch', 'message': 'factor_x 5 is the bound'},))
+         'where': 'inertia_mismatch', 'message': 'factor_x 5 is the bound',
+         'remedy': 'log faster'},))
     assert caution_lines(found) == ['warning: all flights: error in inertia (inertia_mismatch): '
-                                    'factor_x 5 is the bound']
+                                    'factor_x 5 is the bound; log faster']
 
 
 def test_an_export(tmp_path, capsys):
