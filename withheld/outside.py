@@ -696,6 +696,81 @@ class Glitch(Influence):
         return out
 
 
+class Rangefinder(Influence):
+    """
+    A height from a rangefinder that looks along the body's vertical, over things that stand about.
+
+    Over a crate it is less by how high that is, and the estimator follows in a moment, so that its
+    climb is off as well. As autopilots have it that fly by such a height: PX4 User Guide, Using
+    PX4's Navigation Filter (EKF2), on range finders.
+    """
+
+    COUNT, WITHIN = 8, 1.8                      # m from the middle, along either axis
+    WIDE, TIME = (0.2, 0.4), 0.15               # m, to either side; s, in which it follows
+
+    def __init__(self, size, rng):
+        """Draw where crates stand, and how wide, (N, 2) m, and how high they are, m."""
+        self.places = rng.uniform(-self.WITHIN, self.WITHIN, (self.COUNT, 2))
+        self.wide = rng.uniform(*self.WIDE, (self.COUNT, 2))
+        self.high = 0.03 * size * rng.uniform(0.4, 1.0, self.COUNT)
+
+    def begin(self, rng):
+        """Start as over the floor."""
+        self._off, self._last = 0.0, None
+
+    def below(self, place):
+        """Return how high that is, m, which stands at a place (2,) m."""
+        over = np.all(np.abs(place - self.places) < self.wide, axis=1)
+        return float(np.max(self.high, where=over, initial=0.0))
+
+    def measured(self, time, state, thrust):
+        """Return the state with a height and a climb that are off."""
+        x, y, z, w = state[6:10]
+        axis = np.array([2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)])
+        goal = -self.below(state[:2] - state[2] * axis[:2] / max(axis[2], 0.3))
+        step = 0.0 if self._last is None else time - self._last
+        self._last = time
+        self._off = goal + np.exp(-step / self.TIME) * (self._off - goal)
+        out = state.copy()
+        out[2] += self._off
+        out[5] += (goal - self._off) / self.TIME
+        return out
+
+
+class Sticks(Influence):
+    """
+    A safety pilot whose sticks are added to what the program commands, and not in the log.
+
+    Now and then the pilot corrects, about one axis of the body: to one side, and back with less.
+    As where a program flies through the trainer's port of a transmitter, or the autopilot adds the
+    sticks; people move between places with the least jerk (T. Flash, N. Hogan, Journal of
+    Neuroscience 5(7), 1985).
+    """
+
+    PAUSE, LASTS, COUNT = (0.4, 1.8), (0.2, 0.6), 80    # s; s; far more than a flight has
+    BACK, YAW = 0.6, 0.3        # of a correction: what comes back; of the moment, about the axis z
+
+    def __init__(self, size, weight, radius, rng):
+        """Take the moment, N m, at most."""
+        self.most = 0.02 * size * weight * radius
+
+    def begin(self, rng):
+        """Draw when the pilot corrects, and by how much about which axis."""
+        self.lasts = rng.uniform(*self.LASTS, self.COUNT)
+        self.begins = np.cumsum(rng.uniform(*self.PAUSE, self.COUNT) + self.lasts) - self.lasts
+        axes = rng.choice(3, self.COUNT, p=[0.4, 0.4, 0.2])
+        sizes = self.most * rng.uniform(0.5, 1.0, self.COUNT) * rng.choice([-1, 1], self.COUNT)
+        self.moments = sizes[:, None] * (np.eye(3) * [1.0, 1.0, self.YAW])[axes]
+
+    def wrench(self, now):
+        """Return the moment."""
+        last = max(int(np.searchsorted(self.begins, now.time)) - 1, 0)
+        part = 2.0 * np.clip((now.time - self.begins[last]) / self.lasts[last], 0.0, 1.0)
+        share = part % 1.0 if part < 2.0 else 0.0
+        stick = 16.0 * share ** 2 * (1.0 - share) ** 2 * (1.0 if part < 1.0 else -self.BACK)
+        return np.zeros(3), stick * self.moments[last]
+
+
 # Each with what of the vehicle its size is measured by.
 KINDS = {'periodic_force': (Periodic, 'weight'), 'tether': (Tether, 'weight'),
          'updraft': (Updraft, 'weight'), 'thrust_exponent': (Exponent, 'hover'),
@@ -711,4 +786,5 @@ KINDS = {'periodic_force': (Periodic, 'weight'), 'tether': (Tether, 'weight'),
          'turret': (Turret, 'weight', 'radius'), 'roped': (Roped, 'weight'),
          'hoops': (Hoops, 'weight', 'radius', 'hover'), 'wand': (Wand,),
          'pushed': (Pushed, 'weight'), 'barometer': (Barometer,),
-         'retractor': (Retractor, 'weight'), 'glitch': (Glitch,)}
+         'retractor': (Retractor, 'weight'), 'glitch': (Glitch,),
+         'rangefinder': (Rangefinder,), 'sticks': (Sticks, 'weight', 'radius')}
