@@ -30,7 +30,7 @@ STRANGERS = {
                   'ceiling', 'neighbours', 'compass', 'branches', 'leash', 'recoil',
                   'keel', 'twisted', 'flywheel', 'carousel', 'sandbag', 'bent', 'turret', 'roped',
                   'stutter', 'wall', 'whirl', 'hoops', 'wand'),
-    EVALUATION: ('barometer', 'retractor', 'glitch', 'pushed')}
+    EVALUATION: ('barometer', 'retractor', 'glitch', 'pushed', 'lead', 'rangefinder')}
 ORDINARY = {
     'motor_lag': ('underdamped', 'two_poles', 'speed_dependent', 'brushed', 'brushless',
                   'torque_balance', 'dead_band'),

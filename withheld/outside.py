@@ -696,6 +696,85 @@ class Glitch(Influence):
         return out
 
 
+class Lead(Influence):
+    """
+    A stiff lead to the ground, of power or data, which each turn of the heading winds up.
+
+    It turns the vehicle back as a rod in torsion does, about the vertical, until it slips in its
+    clamp. S. Timoshenko, Strength of Materials, 1955, chapter 11; as vehicles fly in a laboratory
+    from a supply on the ground. What it weighs is in the file.
+    """
+
+    GIVES, WOUND = 1.5, 0.8     # rad, by which it is wound as it slips; rad, at most, at first
+
+    def __init__(self, size, weight, radius, rng):
+        """Take the moment, N m, of a turn of 1 rad."""
+        self.moment = 0.008 * size * weight * radius
+
+    def begin(self, rng):
+        """Draw how it is wound."""
+        self._wound, self._last = rng.uniform(-self.WOUND, self.WOUND), None
+
+    def wrench(self, now):
+        """Return the moment, which is about the world's vertical."""
+        wound = self._slipped(now.rotation)
+        return np.zeros(3), -self.moment * wound * now.rotation[2]
+
+    def after(self, step, rotation, acceleration):
+        """Wind it up, or let it slip."""
+        self._wound, self._last = self._slipped(rotation), rotation
+
+    def _slipped(self, rotation):
+        """Return how far, rad, it is wound now, after the turn since the last step."""
+        if self._last is None:
+            self._last = rotation
+        ahead, before = rotation[:2, 0], self._last[:2, 0]
+        turned = np.arctan2(before[0] * ahead[1] - before[1] * ahead[0], before @ ahead)
+        return float(np.clip(self._wound + turned, -self.GIVES, self.GIVES))
+
+
+class Rangefinder(Influence):
+    """
+    A height over ground from a rangefinder that looks down, where boxes stand on the floor.
+
+    Over a box it is too little by as much as the box is high; the estimator follows in a moment,
+    and takes what it follows for a climb or a descent. Where it looks goes with the lean, for
+    which the range is made up for. As of vehicles that fly by optical flow indoors: D. Honegger,
+    L. Meier, P. Tanskanen, M. Pollefeys, An open source and open hardware embedded metric optical
+    flow CMOS camera, ICRA 2013.
+    """
+
+    COUNT, FIELD = 8, 1.2               # m, from the middle, at most, along either axis
+    WIDE = (0.25, 0.45)                 # m, half of a side
+    TIME = 0.15                         # s, in which the estimator follows
+
+    def __init__(self, size, rng):
+        """Draw where the boxes stand, and how wide and how high they are, m."""
+        self.places = rng.uniform(-self.FIELD, self.FIELD, (self.COUNT, 2))
+        self.wide = rng.uniform(*self.WIDE, (self.COUNT, 2))
+        self.high = 0.02 * size * rng.uniform(0.5, 1.0, self.COUNT)
+
+    def begin(self, rng):
+        """Start over the floor."""
+        self._off, self._last = 0.0, None
+
+    def measured(self, time, state, thrust):
+        """Return the state with a height and a climb that are off."""
+        x, y, z, w = state[6:10]
+        upright = max(1.0 - 2.0 * (x * x + y * y), 0.3)
+        aside = 2.0 * np.array([x * z + y * w, y * z - x * w]) / upright
+        spot = state[:2] - max(state[2], 0.0) * aside
+        over = np.all(np.abs(spot - self.places) < self.wide, axis=1)
+        goal = -float(np.max(self.high * over))
+        step = 0.0 if self._last is None else time - self._last
+        self._last = time
+        self._off = goal + np.exp(-step / self.TIME) * (self._off - goal)
+        out = state.copy()
+        out[2] += self._off
+        out[5] += (goal - self._off) / self.TIME
+        return out
+
+
 # Each with what of the vehicle its size is measured by.
 KINDS = {'periodic_force': (Periodic, 'weight'), 'tether': (Tether, 'weight'),
          'updraft': (Updraft, 'weight'), 'thrust_exponent': (Exponent, 'hover'),
@@ -711,4 +790,5 @@ KINDS = {'periodic_force': (Periodic, 'weight'), 'tether': (Tether, 'weight'),
          'turret': (Turret, 'weight', 'radius'), 'roped': (Roped, 'weight'),
          'hoops': (Hoops, 'weight', 'radius', 'hover'), 'wand': (Wand,),
          'pushed': (Pushed, 'weight'), 'barometer': (Barometer,),
-         'retractor': (Retractor, 'weight'), 'glitch': (Glitch,)}
+         'retractor': (Retractor, 'weight'), 'glitch': (Glitch,),
+         'lead': (Lead, 'weight', 'radius'), 'rangefinder': (Rangefinder,)}
