@@ -7,7 +7,6 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from scipy.spatial.transform import Rotation
 from test_withheld_forms import HOVER, instant, PARAMS, PLACES
 
 from withheld import outside
@@ -24,6 +23,8 @@ from withheld.forms.sprayers import SprayBoom
 
 REST = np.zeros(3)
 RADIUS = PARAMS['rotor_radius']
+
+STATE = np.array([*np.arange(1.0, 7.0), 0.0, 0.0, 0.6, 0.8, 0.4, -1.0, 0.2])
 
 
 def part_of(kind, size=2.0, seed=3):
@@ -351,40 +352,6 @@ def test_pairs_tilt_the_body_back_by_more_than_the_velocity_until_the_wake_is_sw
     assert moment == pytest.approx([-2.0 * tilts[1], 0.0, 0.0], abs=1e-12)
 
 
-def seen(part, states, step=0.01):
-    """Return what is off (N, 13) of states in steps."""
-    part.begin(None)
-    return np.array([part.measured(step * k, one, 1.0) - one for k, one in enumerate(states)])
-
-
-def over(place, height=1.0, attitude=(0.0, 0.0, 0.0, 1.0)):
-    return np.array([*place, height, 0.1, -0.2, 0.3, *attitude, 0.1, 0.2, 0.3])
-
-
-def test_a_rangefinder_takes_a_crate_for_the_floor():
-    part = outside.Rangefinder(2.0, np.random.default_rng(1))
-    # The highest crate, which others may overlap, and a corner without any.
-    crate = int(np.argmax(part.high))
-    off = seen(part, 200 * [over(part.places[crate])])
-    assert not np.any(np.delete(off, [2, 5], axis=1))
-    assert off[-1, 2] == pytest.approx(-part.high[crate], rel=1e-3)
-    assert np.all(np.diff(off[:, 2]) <= 0.0) and np.abs(part.high).max() <= 0.06
-    # The climb that it shows is that of the height that it shows.
-    assert np.gradient(off[:, 2], 0.01)[2:-1] == pytest.approx(off[2:-1, 5], rel=2e-3, abs=1e-5)
-    assert not np.any(seen(part, 50 * [over([5.0, 5.0])]))
-
-
-def test_a_rangefinder_that_leans_looks_aside():
-    part = outside.Rangefinder(2.0, np.random.default_rng(1))
-    lean = Rotation.from_euler('xy', [0.2, -0.3])
-    down = -lean.as_matrix()[:, 2]
-    hits = 1.2 / -down[2] * down[:2]
-    part.places, part.wide, part.high = np.array([hits]), np.full((1, 2), 0.05), np.array([0.3])
-    assert np.linalg.norm(hits) > 0.3
-    assert seen(part, 300 * [over([0.0, 0.0], 1.2, lean.as_quat())])[-1, 2] == pytest.approx(-0.3)
-    assert not np.any(seen(part, 300 * [over([0.0, 0.0], 1.2)]))
-
-
 def test_a_pilot_corrects_about_one_axis_to_one_side_and_back_with_less():
     part = outside.Sticks(2.0, 5.0, 0.1, np.random.default_rng(1))
     part.begin(np.random.default_rng(2))
@@ -409,3 +376,23 @@ def test_between_corrections_the_sticks_rest_and_they_push_nowhere():
     assert 0.15 < np.mean(active) < 0.45
     assert not any(active[:int(100.0 * part.begins[0])])
     assert part.begins[-1] > 60.0
+
+
+def test_from_a_boat_the_place_swings_and_the_velocity_goes_with_it():
+    part = outside.MovingBase(2.0, np.random.default_rng(1))
+    part.begin(np.random.default_rng(2))
+    state, times = np.arange(1.0, 14.0), np.arange(0.0, 60.0, 0.01)
+    off = np.array([part.measured(time, state, 1.0) for time in times]) - state
+    assert not np.any(off[:, 6:])
+    assert np.gradient(off[:, :3], 0.01, axis=0)[1:-1] == pytest.approx(off[1:-1, 3:6], abs=1e-3)
+    # Two waves, which add up to twice the acceleration of each at most; the sway is half of it.
+    pull = np.abs(np.gradient(off[:, 3:6], 0.01, axis=0))[1:-1]
+    assert 0.3 < pull[:, 2].max() <= 0.601
+    assert np.linalg.norm(pull[:, :2], axis=1).max() <= 0.301
+    assert abs(off[:, 2].mean()) < 0.2 * np.abs(off[:, 2]).max()
+
+
+def test_a_boat_that_lies_still_hides_nothing():
+    part = outside.MovingBase(0.0, np.random.default_rng(1))
+    part.begin(np.random.default_rng(2))
+    assert np.array_equal(part.measured(3.0, STATE, 1.0), STATE)
