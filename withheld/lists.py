@@ -29,8 +29,9 @@ STRANGERS = {
     DEVELOPMENT: ('periodic_force', 'tether', 'thrust_exponent', 'backlash', 'updraft', 'slosh',
                   'ceiling', 'neighbours', 'compass', 'branches', 'leash', 'recoil',
                   'keel', 'twisted', 'flywheel', 'carousel', 'sandbag', 'bent', 'turret', 'roped',
-                  'stutter', 'wall', 'whirl', 'hoops', 'wand'),
-    EVALUATION: ('barometer', 'retractor', 'glitch', 'pushed')}
+                  'stutter', 'wall', 'whirl', 'hoops', 'wand', 'barometer', 'retractor', 'glitch',
+                  'pushed'),
+    EVALUATION: ('lead', 'moving_base', 'rangefinder', 'sticks')}
 ORDINARY = {
     'motor_lag': ('underdamped', 'two_poles', 'speed_dependent', 'brushed', 'brushless',
                   'torque_balance', 'dead_band'),

@@ -696,6 +696,156 @@ class Glitch(Influence):
         return out
 
 
+class Lead(Influence):
+    """
+    A stiff lead to the ground, of power or data, which each turn of the heading winds up.
+
+    It turns the vehicle back as a rod in torsion does, about the vertical, until it slips in its
+    clamp. S. Timoshenko, Strength of Materials, 1955, chapter 11; as vehicles fly in a laboratory
+    from a supply on the ground. What it weighs is in the file.
+    """
+
+    GIVES, WOUND = 1.5, 0.8     # rad, by which it is wound as it slips; rad, at most, at first
+
+    def __init__(self, size, weight, radius, rng):
+        """Take the moment, N m, of a turn of 1 rad."""
+        self.moment = 0.008 * size * weight * radius
+
+    def begin(self, rng):
+        """Draw how it is wound."""
+        self._wound, self._last = rng.uniform(-self.WOUND, self.WOUND), None
+
+    def wrench(self, now):
+        """Return the moment, which is about the world's vertical."""
+        wound = self._slipped(now.rotation)
+        return np.zeros(3), -self.moment * wound * now.rotation[2]
+
+    def after(self, step, rotation, acceleration):
+        """Wind it up, or let it slip."""
+        self._wound, self._last = self._slipped(rotation), rotation
+
+    def _slipped(self, rotation):
+        """Return how far, rad, it is wound now, after the turn since the last step."""
+        if self._last is None:
+            self._last = rotation
+        ahead, before = rotation[:2, 0], self._last[:2, 0]
+        turned = np.arctan2(before[0] * ahead[1] - before[1] * ahead[0], before @ ahead)
+        return float(np.clip(self._wound + turned, -self.GIVES, self.GIVES))
+
+
+class Rangefinder(Influence):
+    """
+    A height over ground from a rangefinder that looks down, where boxes stand on the floor.
+
+    Over a box it is too little by as much as the box is high; the estimator follows in a moment,
+    and takes what it follows for a climb or a descent. Where it looks goes with the lean, for
+    which the range is made up for. As of vehicles that fly by optical flow indoors: D. Honegger,
+    L. Meier, P. Tanskanen, M. Pollefeys, An open source and open hardware embedded metric optical
+    flow CMOS camera, ICRA 2013.
+    """
+
+    COUNT, FIELD = 8, 1.2               # m, from the middle, at most, along either axis
+    WIDE = (0.25, 0.45)                 # m, half of a side
+    TIME = 0.15                         # s, in which the estimator follows
+
+    def __init__(self, size, rng):
+        """Draw where the boxes stand, and how wide and how high they are, m."""
+        self.places = rng.uniform(-self.FIELD, self.FIELD, (self.COUNT, 2))
+        self.wide = rng.uniform(*self.WIDE, (self.COUNT, 2))
+        self.high = 0.02 * size * rng.uniform(0.5, 1.0, self.COUNT)
+
+    def begin(self, rng):
+        """Start over the floor."""
+        self._off, self._last = 0.0, None
+
+    def measured(self, time, state, thrust):
+        """Return the state with a height and a climb that are off."""
+        x, y, z, w = state[6:10]
+        upright = max(1.0 - 2.0 * (x * x + y * y), 0.3)
+        aside = 2.0 * np.array([x * z + y * w, y * z - x * w]) / upright
+        spot = state[:2] - max(state[2], 0.0) * aside
+        over = np.all(np.abs(spot - self.places) < self.wide, axis=1)
+        goal = -float(np.max(self.high * over))
+        step = 0.0 if self._last is None else time - self._last
+        self._last = time
+        self._off = goal + np.exp(-step / self.TIME) * (self._off - goal)
+        out = state.copy()
+        out[2] += self._off
+        out[5] += (goal - self._off) / self.TIME
+        return out
+
+
+class Sticks(Influence):
+    """
+    A safety pilot whose sticks are added to what the program commands, and not in the log.
+
+    Now and then the pilot corrects, about one axis of the body: to one side, and back with less.
+    As where a program flies through the trainer's port of a transmitter, or the autopilot adds the
+    sticks; people move between places with the least jerk (T. Flash, N. Hogan, Journal of
+    Neuroscience 5(7), 1985).
+    """
+
+    PAUSE, LASTS, COUNT = (0.4, 1.8), (0.2, 0.6), 80    # s; s; far more than a flight has
+    BACK, YAW = 0.6, 0.3        # of a correction: what comes back; of the moment, about the axis z
+
+    def __init__(self, size, weight, radius, rng):
+        """Take the moment, N m, at most."""
+        self.most = 0.02 * size * weight * radius
+
+    def begin(self, rng):
+        """Draw when the pilot corrects, and by how much about which axis."""
+        self.lasts = rng.uniform(*self.LASTS, self.COUNT)
+        self.begins = np.cumsum(rng.uniform(*self.PAUSE, self.COUNT) + self.lasts) - self.lasts
+        axes = rng.choice(3, self.COUNT, p=[0.4, 0.4, 0.2])
+        sizes = self.most * rng.uniform(0.5, 1.0, self.COUNT) * rng.choice([-1, 1], self.COUNT)
+        self.moments = sizes[:, None] * (np.eye(3) * [1.0, 1.0, self.YAW])[axes]
+
+    def wrench(self, now):
+        """Return the moment."""
+        last = max(int(np.searchsorted(self.begins, now.time)) - 1, 0)
+        part = 2.0 * np.clip((now.time - self.begins[last]) / self.lasts[last], 0.0, 1.0)
+        share = part % 1.0 if part < 2.0 else 0.0
+        stick = 16.0 * share ** 2 * (1.0 - share) ** 2 * (1.0 if part < 1.0 else -self.BACK)
+        return np.zeros(3), stick * self.moments[last]
+
+
+class MovingBase(Influence):
+    """
+    Places that satellites show from a receiver on a boat, which waves lift and sway.
+
+    The log has places and velocities from there, as where a boat is at anchor and nobody logs its
+    own motion. Heave is that of two regular waves; what sways is half of it. T. I. Fossen,
+    Handbook of Marine Craft Hydrodynamics and Motion Control, 2011, chapter 8.
+    """
+
+    PERIODS, SWAY = ((2.0, 3.5), (3.5, 6.0)), 0.5       # s; of the heave, along one direction
+
+    def __init__(self, size, rng):
+        """Draw the waves; size 1 is an acceleration of 0.15 m/s^2 in each."""
+        self.rates = 2.0 * np.pi / np.array([rng.uniform(*span) for span in self.PERIODS])
+        self.high = 0.15 * size / self.rates ** 2
+        heading = rng.uniform(0.0, 2.0 * np.pi)
+        self.along = np.array([self.SWAY * np.cos(heading), self.SWAY * np.sin(heading), 1.0])
+
+    def begin(self, rng):
+        """Draw where the waves are, (heave, sway)."""
+        self.phases = rng.uniform(0.0, 2.0 * np.pi, (2, 2))
+
+    def base(self, time):
+        """Return where the receiver is, m, and how fast it moves, m/s, each (3,)."""
+        angles = self.rates * time + self.phases
+        place, speed = np.sin(angles) @ self.high, np.cos(angles) @ (self.high * self.rates)
+        return self.along * place[[1, 1, 0]], self.along * speed[[1, 1, 0]]
+
+    def measured(self, time, state, thrust):
+        """Return the state as it is seen from the boat."""
+        place, speed = self.base(time)
+        out = state.copy()
+        out[:3] -= place
+        out[3:6] -= speed
+        return out
+
+
 # Each with what of the vehicle its size is measured by.
 KINDS = {'periodic_force': (Periodic, 'weight'), 'tether': (Tether, 'weight'),
          'updraft': (Updraft, 'weight'), 'thrust_exponent': (Exponent, 'hover'),
@@ -711,4 +861,6 @@ KINDS = {'periodic_force': (Periodic, 'weight'), 'tether': (Tether, 'weight'),
          'turret': (Turret, 'weight', 'radius'), 'roped': (Roped, 'weight'),
          'hoops': (Hoops, 'weight', 'radius', 'hover'), 'wand': (Wand,),
          'pushed': (Pushed, 'weight'), 'barometer': (Barometer,),
-         'retractor': (Retractor, 'weight'), 'glitch': (Glitch,)}
+         'retractor': (Retractor, 'weight'), 'glitch': (Glitch,),
+         'lead': (Lead, 'weight', 'radius'), 'rangefinder': (Rangefinder,),
+         'moving_base': (MovingBase,), 'sticks': (Sticks, 'weight', 'radius')}
