@@ -1,8 +1,9 @@
 # Copyright 2026 quad_ident_ros contributors
 # SPDX-License-Identifier: Apache-2.0
-"""Streams of one record that are stamped at different times for the same event, put together."""
+"""Streams of records that are stamped at different times for the same event, put together."""
 
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy
@@ -14,23 +15,44 @@ from quad_ident_ros.model.attitude import continuous
 
 STREAMS = {'pose': ('px', 'py', 'pz', *QUATERNION, *EULER), 'velocity': ('vx', 'vy', 'vz'),
            'rate': ('wx', 'wy', 'wz', 'ax', 'ay', 'az')}
+OF_POSE = {'rate': clock_offset, 'velocity': velocity_offset}
+"""What tells how much later than a stream the pose is stamped."""
 ALIKE = 3.0         # standard errors within which offsets are of one clock
 LEAST = 0.0005      # s, of an offset that is worth moving a stream for
+BY_MOTION = 2.0     # of the SEVERAL standard errors of one flight: what the motion answers to may
+                    # be alike in all flights, so that only the others fall with their number
+BY_CHANCE = 0.05    # that offsets of one clock scatter so much: then each flight has its own
 GAP = 0.05          # s between two samples, or as many periods as below, from which on nothing
 PERIODS = 1.6       # is taken from between
 
 
-def aligned(record: FlightRecord) -> tuple[FlightRecord, dict[str, float]]:
+@dataclass(frozen=True)
+class Offset:
+    """How much later than the pose a stream is stamped, s, and its standard error."""
+
+    value: float
+    std: float
+    flights: int = 1
+
+    @property
+    def clear(self) -> bool:
+        """Whether it is one, and large enough to move a stream for."""
+        several = (SEVERAL - BY_MOTION) + BY_MOTION * np.sqrt(self.flights)
+        return abs(self.value) > max(several * self.std, LEAST)
+
+    def like(self, other: 'Offset') -> bool:
+        """Return whether another one may be of the same clock."""
+        return abs(self.value - other.value) <= max(ALIKE * np.hypot(self.std, other.std), LEAST)
+
+
+def aligned(record: FlightRecord, late: dict[str, float]
+            ) -> tuple[FlightRecord, dict[str, float]]:
     """
     Return a flight record with states of one clock, and {stream: s that it was stamped late}.
 
-    The slopes of the pose are velocity and rate. Where their stamps clearly differ, the one that
-    comes first keeps its time, for a measurement may be late but never early, and the others are
-    moved onto it; one whose offset cannot be determined stays where it is. Rows whose new values
-    lie in gaps or beyond the end are left out. Without such offsets the record itself is returned,
-    and {}.
+    Rows whose new values lie in gaps or beyond the end are left out. Where nothing is late, or too
+    few rows would remain, the record itself is returned, and {}. Args: late: as of lateness.
     """
-    late = lateness(record)
     if not late:
         return record, late
     columns, whole = dict(record.columns), np.ones(len(record), bool)
@@ -47,22 +69,58 @@ def aligned(record: FlightRecord) -> tuple[FlightRecord, dict[str, float]]:
                    columns={name: values[whole] for name, values in columns.items()}), late
 
 
-def lateness(record: FlightRecord) -> dict[str, float]:
-    """Return {stream: s} of the streams of a record that are stamped later than the first."""
-    found = {'rate': clock_offset(record), 'velocity': velocity_offset(record)}
-    known = {stream: (-one.offset, one.std) for stream, one in found.items() if one is not None}
-    if len(known) == 2:
-        (rate, wide), (velocity, narrow) = known.values()
-        if abs(rate - velocity) <= ALIKE * np.hypot(wide, narrow):
-            # They share one clock: the better known offset of the two is that of the pose.
-            weights = np.array([wide, narrow]) ** -2.0
-            both = float(np.average([rate, velocity], weights=weights)), weights.sum() ** -0.5
-            known = dict.fromkeys(known, both)
-    offsets = {'pose': 0.0} | {
-        stream: offset if abs(offset) > max(SEVERAL * std, LEAST) else 0.0
-        for stream, (offset, std) in known.items()}
+def lateness(records: Sequence[FlightRecord], held_out: Sequence[FlightRecord] = ()
+             ) -> list[dict[str, float]]:
+    """
+    Return {stream: s} of the streams that are stamped later than the first, of each record.
+
+    The slopes of the pose are velocity and rate. Where their stamps clearly differ, the one that
+    comes first keeps its time, for a measurement may be late but never early; one whose offset
+    cannot be determined is taken as not late. Where the offsets of all records agree, they are
+    those of one set of sensors, and the mean of them is that of each. The records that are held
+    out come last, and have no part in it.
+    """
+    every = [*records, *held_out]
+    found = [{stream: Offset(-one.offset, one.std) for stream, offset_of in OF_POSE.items()
+              if (one := offset_of(record)) is not None} for record in every]
+    for stream in OF_POSE:
+        common = _common([one[stream] for one in found[:len(records)] if stream in one])
+        if common is None:
+            continue
+        for record, one in zip(every, found, strict=True):
+            if record.has(*STREAMS[stream][:3]) and common.like(one.get(stream, common)):
+                one[stream] = common
+    return [_late(one) for one in found]
+
+
+def _common(offsets: Sequence[Offset]) -> Offset | None:
+    """Return the weighted mean of the Offsets of flights, or None where they are not alike."""
+    if not offsets:
+        return None
+    mean = _mean(offsets)
+    off = np.array([one.value for one in offsets]) - mean.value
+    scatter = np.sum((off / [one.std for one in offsets]) ** 2)
+    alike = (np.abs(off).max() <= LEAST
+             or scatter <= scipy.special.chdtri(len(offsets) - 1, BY_CHANCE))
+    return replace(mean, flights=len(offsets)) if alike else None
+
+
+def _mean(offsets: Sequence[Offset]) -> Offset:
+    """Return the mean of Offsets by their precision."""
+    weights = np.array([one.std for one in offsets]) ** -2.0
+    return Offset(float(np.average([one.value for one in offsets], weights=weights)),
+                  float(weights.sum() ** -0.5), min(one.flights for one in offsets))
+
+
+def _late(known: dict[str, Offset]) -> dict[str, float]:
+    """Return {stream: s} of those later than the first, by their Offsets from the pose."""
+    # Where they share one clock, the better known offset of the two is that of the pose.
+    if len(known) == 2 and known['rate'].like(known['velocity']):
+        known = dict.fromkeys(known, _mean([*known.values()]))
+    offsets = {'pose': 0.0} | {stream: one.value if one.clear else 0.0
+                               for stream, one in known.items()}
     first = min(offsets.values())
-    return {stream: float(offset - first) for stream, offset in offsets.items()
+    return {stream: offset - first for stream, offset in offsets.items()
             if offset - first > LEAST}
 
 

@@ -2,12 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Clocks of states and commands of flights, from what the commands answer."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from quad_ident_ros.data.aligned import aligned
+from quad_ident_ros.data.aligned import aligned, lateness
 from quad_ident_ros.data.quality.answer import Answer, answer_of, CLEAR
 from quad_ident_ros.data.record import FlightRecord
 
@@ -31,14 +31,15 @@ class Clock:
     period: float
 
 
-def on_one_clock(records: Iterable[FlightRecord]
+def on_one_clock(records: Sequence[FlightRecord], held_out: Sequence[FlightRecord] = ()
                  ) -> list[tuple[FlightRecord, dict[str, float], Answer | None]]:
     """
     Return for each record itself with its streams aligned, {stream: s} moved, and its Answer.
 
     No Answer is looked for where streams were moved: which of them commands answer is not known.
     """
-    found = [aligned(record) for record in records]
+    found = [aligned(record, late) for record, late in zip(
+        (*records, *held_out), lateness(records, held_out), strict=True)]
     return [(record, late, None if late else answer_of(record)) for record, late in found]
 
 

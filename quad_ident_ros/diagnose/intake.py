@@ -105,8 +105,9 @@ def take_in(records: Sequence[FlightRecord], vehicle: Vehicle, hold_out: FlightR
     alone = hold_out is None and len(records) == 1
     every = [*records, *([] if hold_out is None else [hold_out])]
     every, vehicle = _with_states(every, vehicle, findings)
-    every, late, answers = map(list, zip(*on_one_clock(every), strict=True))
-    learnt = every if alone else every[:-1]
+    count = len(every) if alone else len(every) - 1
+    every, late, answers = map(list, zip(*on_one_clock(every[:count], every[count:]), strict=True))
+    learnt = every[:count]
     voltage = highest_voltage(learnt)
     clocks = clocks_of(answers[:len(learnt)], answers[len(learnt):])
     ruled_out = _of_rotors(every, vehicle, clocks, len(learnt), rules, findings)

@@ -37,6 +37,12 @@ def late(record, offsets):
                    columns={name: values[there] for name, values in columns.items()})
 
 
+def moved_back(record):
+    """Return a record that is the only one, aligned, and {stream: s that it was stamped late}."""
+    [told] = lateness([record])
+    return aligned(record, told)
+
+
 def flown(seed=0, noise=USUAL, truth=None, course='lissajous'):
     return fly_closed_loop(VEHICLE, truth or {}, course, duration=12.0, seed=seed, noise=noise)
 
@@ -44,7 +50,7 @@ def flown(seed=0, noise=USUAL, truth=None, course='lissajous'):
 @pytest.mark.parametrize('offsets', LATE, ids=str)
 def test_how_late_a_stream_is_stamped_is_told_and_it_is_moved_back(offsets):
     record = flown(noise=FINE)
-    back, told = aligned(late(record, offsets))
+    back, told = moved_back(late(record, offsets))
     assert told.keys() == offsets.keys()
     for stream, offset in offsets.items():
         assert told[stream] == pytest.approx(offset, abs=3e-4)
@@ -60,7 +66,7 @@ def test_how_late_a_stream_is_stamped_is_told_and_it_is_moved_back(offsets):
 def test_a_record_of_one_clock_is_left_as_it_is():
     for seed in range(5):
         record = flown(seed)
-        assert aligned(record) == (record, {})
+        assert moved_back(record) == (record, {})
 
 
 def test_lost_rows_and_jumps_of_the_attitude_do_not_reach_their_neighbours():
@@ -75,8 +81,8 @@ def test_lost_rows_and_jumps_of_the_attitude_do_not_reach_their_neighbours():
     lost[300:306] = False
     faulty = replace(record, t=record.t[lost],
                      columns={name: values[lost] for name, values in columns.items()})
-    whole, _ = aligned(record)
-    back, told = aligned(faulty)
+    whole, _ = moved_back(record)
+    back, told = moved_back(faulty)
     assert told['pose'] == pytest.approx(0.02, abs=5e-4)
     assert len(faulty) - 20 < len(back) < len(faulty)
     both = np.intersect1d(whole.t, back.t)
@@ -92,7 +98,7 @@ def test_jumps_of_the_attitude_make_no_stream_late(seed):
     turns = Rotation.from_rotvec(0.35 * rng.normal(size=(len(record), 3)) * jumped[:, None])
     attitude = Rotation.from_quat(record.stack('qx', 'qy', 'qz', 'qw')) * turns
     columns = dict(zip(('qx', 'qy', 'qz', 'qw'), attitude.as_quat().T, strict=True))
-    told = lateness(replace(record, columns={**record.columns, **columns}))
+    [told] = lateness([replace(record, columns={**record.columns, **columns})])
     assert told.keys() == {'pose', 'velocity'}      # motion capture gives both
     assert told['pose'] == pytest.approx(0.02, abs=2e-3)
 
@@ -100,7 +106,7 @@ def test_jumps_of_the_attitude_make_no_stream_late(seed):
 @pytest.mark.parametrize('share', [0.1, 0.2])
 def test_lost_rows_take_no_others_with_them(share):
     record = flown(0, replace(USUAL, mocap=Stream(delay=0.02), lost=share))
-    back, told = aligned(record)
+    back, told = moved_back(record)
     assert told.keys() == {'pose', 'velocity'}
     assert len(back) > 0.97 * len(record)
 
@@ -110,7 +116,7 @@ def test_a_rate_that_changes_along_the_flight_leaves_no_part_out():
     rows = np.r_[:500, 500:len(record):2]
     slower = replace(record, t=record.t[rows],
                      columns={name: values[rows] for name, values in record.columns.items()})
-    assert len(aligned(slower)[0]) > len(slower) - 5
+    assert len(moved_back(slower)[0]) > len(slower) - 5
 
 
 @pytest.mark.parametrize('gone', ['velocity', 'rate'])
@@ -119,7 +125,7 @@ def test_a_stream_that_is_not_there_is_not_moved(gone):
     columns = {name: values for name, values in record.columns.items()
                if name not in STREAMS[gone]}
     record = replace(record, columns=columns)
-    assert gone not in aligned(record)[1]
+    assert gone not in moved_back(record)[1]
 
 
 def test_a_stream_whose_offset_cannot_be_told_stays_where_it_is():
@@ -129,8 +135,50 @@ def test_a_stream_whose_offset_cannot_be_told_stays_where_it_is():
              zip((*QUATERNION, 'wx', 'wy', 'wz'), (1, 0, 0, 0, 0, 0, 0), strict=True)}
     record = late(record, {'pose': 0.02})
     still = {name: values[:len(record)] for name, values in still.items()}
-    told = lateness(replace(record, columns={**record.columns, **still}))
+    [told] = lateness([replace(record, columns={**record.columns, **still})])
     assert told.keys() == {'pose'}
+
+
+def faint(record):
+    """Return a record whose attitude is too noisy to say by itself that 6 ms are an offset."""
+    turns = 0.015 * np.random.default_rng(len(record)).normal(size=(len(record), 3))
+    attitude = Rotation.from_quat(record.stack('qx', 'qy', 'qz', 'qw')) * Rotation.from_rotvec(
+        turns)
+    return replace(record, columns=record.columns | dict(
+        zip(('qx', 'qy', 'qz', 'qw'), attitude.as_quat().T, strict=True)))
+
+
+@pytest.fixture(scope='module')
+def of_a_late_gyro():
+    """Flights whose gyro is 6 ms late, of which the last one does not show it by itself."""
+    sensors = replace(USUAL, imu=Stream(delay=0.006))
+    *clear, last = [flown(k, sensors, None, course)
+                    for k, course in enumerate(('figure8', 'lissajous', 'figure8'))]
+    return [*clear, faint(last)]
+
+
+def test_what_flights_show_together_holds_for_one_that_does_not_show_it(of_a_late_gyro):
+    assert lateness(of_a_late_gyro[-1:]) == [{}]
+    told = lateness(of_a_late_gyro)
+    assert told[0] == told[1] == told[2]
+    assert told[0] == {'rate': pytest.approx(0.006, abs=5e-4)}
+
+
+def test_a_flight_that_is_held_out_has_no_part_in_the_offsets_of_the_others(of_a_late_gyro):
+    *clear, last = of_a_late_gyro
+    told = lateness(clear)
+    # It gets theirs, where it does not speak against it, and keeps its own where it does.
+    assert lateness(clear, [last]) == [*told, told[0]]
+    other = late(clear[0], {'rate': 0.02})
+    *same, own = lateness(clear, [other])
+    assert same == told and own == lateness([other])[0]
+    assert own['rate'] == pytest.approx(0.026, abs=1e-3)
+
+
+def test_flights_whose_offsets_differ_keep_their_own(of_a_late_gyro):
+    first, second, _ = of_a_late_gyro
+    other = late(second, {'rate': 0.02})
+    assert lateness([first, other]) == [*lateness([first]), *lateness([other])]
 
 
 @pytest.mark.slow
@@ -155,7 +203,7 @@ def test_a_stream_that_is_late_changes_no_verdict(sensors, stream, offset, truth
 def test_a_late_rate_is_not_taken_for_the_lag_of_motors():
     lagging = {'motor_lag': {'time_constant': 0.03}}
     record = flown(0, replace(USUAL, imu=Stream(delay=0.006)), lagging, 'figure8')
-    [parameter] = fit([aligned(record)[0]], VEHICLE, ['motor_lag']).parameters
+    [parameter] = fit([moved_back(record)[0]], VEHICLE, ['motor_lag']).parameters
     assert parameter.value == pytest.approx(0.03, abs=4 * parameter.std)
 
 
