@@ -87,9 +87,9 @@ def lateness(records: Sequence[FlightRecord], held_out: Sequence[FlightRecord] =
         common = _common([one[stream] for one in found[:len(records)] if stream in one])
         if common is None:
             continue
-        for record, one in zip(every, found, strict=True):
-            if record.has(*STREAMS[stream][:3]) and common.like(one.get(stream, common)):
-                one[stream] = common
+        for record, known in zip(every, found, strict=True):
+            if record.has(*STREAMS[stream][:3]) and common.like(known.get(stream, common)):
+                known[stream] = common
     return [_late(one) for one in found]
 
 

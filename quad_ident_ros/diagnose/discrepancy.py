@@ -35,6 +35,12 @@ class Products:
     cross: np.ndarray
     power: np.ndarray
 
+    def at(self, step: np.ndarray) -> 'Products':
+        """Return the Products of the residuals r - Z step, after a step (N,) of the columns."""
+        pull = self.slopes @ step
+        power = self.power - np.sum((2.0 * self.cross - pull) @ step, axis=0)
+        return Products(self.slopes, self.cross - pull, power)
+
 
 @dataclass(frozen=True, eq=False)
 class Blocks:

@@ -159,18 +159,23 @@ def form_errors_of(distances: dict, rules: Rules) -> np.ndarray:
 
 
 def normal_at(frame: Frame, fit: Estimate, layout: Layout, distances: dict,
-              sizes: tuple[float, float], form_error: float | np.ndarray) -> Normal:
+              sizes: tuple[float, float], form_error: float | np.ndarray,
+              step: np.ndarray | None = None) -> Normal:
     """
     Return the Normal in a Layout's columns with the discrepancy marginalised out.
 
     Args: fit: at which the Frame is; sizes: force (N) and moment (N m) of the discrepancy, and
-    form_error, as of scales.
+    form_error, as of scales; step (layout.size,): from the fit to where the Normal is wanted.
     """
     information = np.zeros((layout.size, layout.size))
     gradient, cost, scores = np.zeros(layout.size), 0.0, []
     clock, kept = len(frame.wanted), frame.places(layout.wanted)
     for number, errors in enumerate(fit.residuals):
         found = frame.with_residual(errors, number, slice(None))
+        if step is not None:
+            moved = np.zeros(clock + 1)
+            moved[kept] = layout.of_flight(step, number)
+            found = found.at(moved)
         along = directions_of(distances, number, frame.wanted)
         along *= scales(*sizes, form_error, along.shape[2])
         along = np.pad(along, ((0, 0), (0, 1), (0, 0)))[:, None]    # the clock has no part in them

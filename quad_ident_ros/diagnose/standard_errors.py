@@ -16,7 +16,13 @@ from quad_ident_ros.diagnose.sensor_errors import sensor_covariance
 from quad_ident_ros.greybox.estimate import Estimate
 from quad_ident_ros.greybox.flights import Flight
 from quad_ident_ros.greybox.known_together import with_constants
-from quad_ident_ros.greybox.normal import covariance_of, first_of, marginal, Normal
+from quad_ident_ros.greybox.normal import (
+    bounded_step,
+    covariance_of,
+    first_of,
+    marginal,
+    Normal,
+)
 from quad_ident_ros.greybox.nuisances import Layout
 from quad_ident_ros.greybox.parameters import INDEX, limits, uncertain_constants
 from quad_ident_ros.model.vehicle import Vehicle
@@ -86,11 +92,15 @@ def joint_of(fitted: Fitted, flights: Sequence[Flight], frame: Frame, vehicle: V
     precision = scipy.linalg.block_diag(np.zeros((len(columns), len(columns))),
                                         fit.nuisances.precision)
 
-    def of(one: Estimate) -> Normal:
-        return marginal(normal_at(frame, one, layout, distances, (force, moment), form_error),
-                        len(columns), precision)
+    def at(one: Estimate, step: np.ndarray | None = None) -> Normal:
+        return normal_at(frame, one, layout, distances, (force, moment), form_error, step)
 
-    shared = of(fit)
+    def of(one: Estimate) -> Normal:
+        return marginal(at(one), len(columns), precision)
+
+    # Where the discrepancy is marginalised out the likeliest parameters are others: away from
+    # them the blocks scatter by how much each of them shows, too.
+    shared = marginal(at(fit, _step(at(fit), fit, precision, vehicle)), len(columns), precision)
     size, count = limits(vehicle)[2, columns], len(fit.columns)
     sensors = sensor_covariance(fit, flights, vehicle.gravity, rules, size[:count],
                                 lambda one: first_of(of(one), count))
@@ -100,3 +110,24 @@ def joint_of(fitted: Fitted, flights: Sequence[Flight], frame: Frame, vehicle: V
     _, whole = with_constants(shared, np.array(list(constants.values())), size)
     whole[:count, :count] += sensors
     return Joint(exact, sensors, tuple(constants), whole, form_errors, form_error)
+
+
+def _step(normal: Normal, fit: Estimate, precision: np.ndarray, vehicle: Vehicle) -> np.ndarray:
+    """
+    Return the step (C,) from a fit to the likeliest parameters of a Normal, within bounds.
+
+    Constants of the vehicle file, which stand between the fit's columns and nuisances, are held.
+    """
+    lower, upper, size = limits(vehicle)[:, fit.columns]
+    values, count = fit.nuisances.values, len(fit.columns)
+    moved = [*range(count), *range(len(precision) - values.size, len(precision))]
+    wide = np.full(values.size, np.inf)
+    now = np.concatenate([fit.z[fit.columns], values.ravel()])
+    inside = np.ix_(moved, moved)
+    step = np.zeros(len(precision))
+    step[moved], _ = bounded_step(
+        (normal.information + precision)[inside],
+        normal.gradient[moved] - precision[inside] @ now, now,
+        np.append(lower, -wide), np.append(upper, wide),
+        np.append(size, np.tile(fit.nuisances.spreads, len(values))))
+    return step

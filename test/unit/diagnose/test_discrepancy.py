@@ -73,6 +73,16 @@ def dense(flights, deviation, scatter):
     return value
 
 
+def test_after_a_step_the_products_are_those_of_the_residuals_that_are_left():
+    random = np.random.default_rng(5)
+    table, residual = random.normal(size=(ROLLOUTS, LENGTH, 4)), random.normal(
+        size=(ROLLOUTS, LENGTH))
+    step = random.normal(size=4)
+    moved, expected = products(table, residual).at(step), products(table, residual - table @ step)
+    for name in ('slopes', 'cross', 'power'):
+        assert getattr(moved, name) == pytest.approx(getattr(expected, name))
+
+
 @pytest.mark.parametrize('scatter', [1.0, 2.7])
 @pytest.mark.parametrize(('force', 'moment'), [(0.0, 0.0), (0.3, 0.0), (0.0, 2.0), (0.4, 0.7)])
 def test_the_likelihood_is_that_of_the_dense_normal_distribution(force, moment, scatter):

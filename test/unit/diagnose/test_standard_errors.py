@@ -21,14 +21,16 @@ VEHICLE = load_vehicle('hummingbird')
 DRAG = Candidate('rotor_drag', 'by_speed', (INDEX['rotor_drag.coefficient'],))
 BLOCKS, SAMPLES, NULLS = 60, 5, 12      # seconds, samples of 12 errors in each
 VALUE, SLOPE = 0.5, 100.0               # of the parameter; of the velocity per it, in noises
+ALL = np.ones(BLOCKS)                   # of what a second usually shows
 
 
-def estimated(form_error, seed):
+def estimated(form_error, seed, shown=ALL, off=0.0):
     """
     Return the estimate of a parameter by least squares, and the Joint of it alone.
 
     From one rollout of SAMPLES per second whose velocity is noise and what a drag does that is
-    wrong by a relative error of its own in each second.
+    wrong by a relative error of its own in each second. shown (BLOCKS,): how much of it each
+    second shows; off: by how much the fit ends beside the best value.
     """
     rng = np.random.default_rng(seed)
     wanted = sorted({*DRAG.columns, *WRENCH})
@@ -36,11 +38,11 @@ def estimated(form_error, seed):
     table = np.zeros((BLOCKS, NULLS + len(wanted) + 1, length))
     does = np.zeros((SAMPLES, NULLS))
     does[:, 3] = SLOPE
-    table[:, NULLS + wanted.index(DRAG.columns[0])] = does.ravel()
+    across = np.outer(shown, does.ravel())
+    table[:, NULLS + wanted.index(DRAG.columns[0])] = across
     strength = VALUE * (1.0 + form_error * rng.normal(size=BLOCKS))
-    errors = strength[:, None] * does.ravel() + rng.normal(size=(BLOCKS, length))
-    across = np.tile(does.ravel(), (BLOCKS, 1))
-    value = np.sum(across * errors) / np.sum(across ** 2)
+    errors = strength[:, None] * across + rng.normal(size=(BLOCKS, length))
+    value = np.sum(across * errors) / np.sum(across ** 2) + off
     z = nominal(VEHICLE)
     z[DRAG.columns[0]] += value
     residuals = (errors - value * across).reshape(BLOCKS, SAMPLES, NULLS)
@@ -72,3 +74,11 @@ def test_how_exact_a_formula_is_shows_over_several_flights(form_error):
     """The relative error that all flights together find likeliest is the true one."""
     curves = [estimated(form_error, seed)[1].form_errors['rotor_drag'] for seed in range(8)]
     assert OF_EACH[np.argmax(np.sum(curves, axis=0))] == pytest.approx(form_error)
+
+
+def test_where_a_fit_ended_makes_no_standard_error_larger():
+    """Few blocks show it: at another value than the best one these differ from the others."""
+    shown = np.where(np.arange(BLOCKS) % 12, 1.0, 10.0)
+    exact = 1.0 / (SLOPE * np.sqrt(SAMPLES * np.sum(shown ** 2)))
+    for off in (0.0, 6.0 * exact):
+        assert estimated(0.0, 1, shown, off)[1].errors == pytest.approx([exact], rel=0.02)
