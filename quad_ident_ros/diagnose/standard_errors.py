@@ -16,13 +16,7 @@ from quad_ident_ros.diagnose.sensor_errors import sensor_covariance
 from quad_ident_ros.greybox.estimate import Estimate
 from quad_ident_ros.greybox.flights import Flight
 from quad_ident_ros.greybox.known_together import with_constants
-from quad_ident_ros.greybox.normal import (
-    bounded_step,
-    covariance_of,
-    first_of,
-    marginal,
-    Normal,
-)
+from quad_ident_ros.greybox.normal import covariance_of, first_of, marginal, Normal, solve
 from quad_ident_ros.greybox.nuisances import Layout
 from quad_ident_ros.greybox.parameters import INDEX, limits, uncertain_constants
 from quad_ident_ros.model.vehicle import Vehicle
@@ -114,20 +108,16 @@ def joint_of(fitted: Fitted, flights: Sequence[Flight], frame: Frame, vehicle: V
 
 def _step(normal: Normal, fit: Estimate, precision: np.ndarray, vehicle: Vehicle) -> np.ndarray:
     """
-    Return the step (C,) from a fit to the likeliest parameters of a Normal, within bounds.
+    Return the step (C,) from a fit to the likeliest parameters of a Normal, whatever their bounds.
 
     Constants of the vehicle file, which stand between the fit's columns and nuisances, are held.
     """
-    lower, upper, size = limits(vehicle)[:, fit.columns]
     values, count = fit.nuisances.values, len(fit.columns)
-    moved = [*range(count), *range(len(precision) - values.size, len(precision))]
-    wide = np.full(values.size, np.inf)
-    now = np.concatenate([fit.z[fit.columns], values.ravel()])
+    nuisances = range(len(precision) - values.size, len(precision))
+    moved, step = [*range(count), *nuisances], np.zeros(len(precision))
     inside = np.ix_(moved, moved)
-    step = np.zeros(len(precision))
-    step[moved], _ = bounded_step(
-        (normal.information + precision)[inside],
-        normal.gradient[moved] - precision[inside] @ now, now,
-        np.append(lower, -wide), np.append(upper, wide),
-        np.append(size, np.tile(fit.nuisances.spreads, len(values))))
+    now = np.concatenate([fit.z[fit.columns], values.ravel()])
+    size = np.append(limits(vehicle)[2, fit.columns], np.tile(fit.nuisances.spreads, len(values)))
+    step[moved] = solve((normal.information + precision)[inside],
+                        normal.gradient[moved] - precision[inside] @ now, size)
     return step
