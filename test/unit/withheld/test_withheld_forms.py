@@ -2,16 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """The realities of the withheld check: other forms of the effects, wrong files, logs."""
 
-import copy
 from importlib.util import find_spec
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
+from withheld_parts import fresh, HOVER, instant, made, PARAMS, PLACES
 
 from withheld.actuators import Battery, Line, Motor
-from withheld.constants import hover_speed
 from withheld.files import FARTHEST, misread, SPREADS
 from withheld.forms import (
     air,
@@ -20,7 +19,6 @@ from withheld.forms import (
     cells,
     escs,
     EVENTS,
-    form_of,
     FORMS,
     links,
     loads,
@@ -33,34 +31,8 @@ from withheld.lists import NOISES
 from withheld.logs import Grounded, Logging, LowPass
 from withheld.sensors import declared, moved, Noise, noise_of, WHITE
 
-PARAMS = {
-    'mass': 0.5, 'Ixx': 3e-3, 'Iyy': 3e-3, 'Izz': 5e-3, 'Ixy': 0.0, 'Ixz': 0.0, 'Iyz': 0.0,
-    'num_rotors': 4, 'k_eta': 5e-6, 'k_m': 1e-7, 'rotor_radius': 0.1,
-    'rotor_speed_max': 800.0,
-    'rotor_directions': np.array([1, -1, 1, -1]), 'linear_drag': np.array([0.05, 0.05, 0.06]),
-    'rotor_pos': {'r1': np.array([0.12, 0.12, 0.0]), 'r2': np.array([0.12, -0.12, 0.0]),
-                  'r3': np.array([-0.12, -0.12, 0.0]), 'r4': np.array([-0.12, 0.12, 0.0])}}
-HOVER = hover_speed(PARAMS)
-PLACES = np.array(list(PARAMS['rotor_pos'].values()))
 FLAT = [(effect, form) for table in (*FORMS.values(), EVENTS) for effect, forms in table.items()
         for form in forms if form not in ('brushed', 'brushless')]
-
-
-def made(effect, form, size):
-    part = form_of(effect, form)(size, PARAMS, np.random.default_rng(3))
-    part.begin(np.random.default_rng(4))
-    return part
-
-
-def instant(velocity=(1.0, -0.5, 0.3), turn=(1.1, 0.9, 1.0, 1.05), height=0.3, time=7.0,
-            rate=(0.5, -0.3, 0.2)):
-    return Instant(time, np.array([0.2, 0.1, height]), np.array(velocity), np.eye(3),
-                   np.array(rate), np.array(velocity), HOVER * np.array(turn),
-                   np.full(4, height), PLACES)
-
-
-def fresh():
-    return copy.deepcopy(PARAMS) | {'centre': np.zeros(3)}
 
 
 @pytest.mark.parametrize(('effect', 'form'), FLAT)

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 from scipy.spatial.transform import Rotation
-from test_withheld_forms import fresh, HOVER, PARAMS, PLACES
+from withheld_parts import fresh, HOVER, made, PARAMS, PLACES
 
 from quad_ident_ros.effects.registry import EFFECTS, vector
 from quad_ident_ros.model.actuators import actuated
 from quad_ident_ros.model.vehicle import load_vehicle
 from withheld.actuators import Battery
-from withheld.forms import EVALUATION, form_of
+from withheld.forms import EVALUATION
 
 # Of what a form does, rms: less is a small error of form, which the diagnosis must not mind.
 LEAST = 0.05
@@ -34,16 +34,10 @@ WAY = np.column_stack([1.2 * np.sin(0.9 * FLIGHT['time']), 1.2 * np.cos(0.7 * FL
 LEANS = Rotation.from_euler('xy', 0.15 * FLIGHT['air'][:, :2])
 
 
-def made(effect, form, size=SIZE):
-    part = form_of(effect, form)(size, PARAMS, np.random.default_rng(3))
-    part.begin(np.random.default_rng(4))
-    return part
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize(('effect', 'form'), FORCES)
 def test_a_force_or_moment_is_no_form_of_the_library(effect, form):
-    part = made(effect, form)
+    part = made(effect, form, SIZE)
     if isinstance(part, Battery):
         assert not part.recorded    # a recorded voltage would show it to the library
         target = of_battery(part, PARAMS, PLACES, HOVER, FLIGHT)
@@ -55,7 +49,7 @@ def test_a_force_or_moment_is_no_form_of_the_library(effect, form):
 
 
 def test_what_the_fit_leaves_of_a_form_of_the_library_is_nothing():
-    sloped = of_part(made('thrust_scale', 'sloped'), PARAMS, PLACES, FLIGHT)
+    sloped = of_part(made('thrust_scale', 'sloped', SIZE), PARAMS, PLACES, FLIGHT)
     rests = {one.name: remainder(sloped, one, PARAMS, PLACES, FLIGHT, HOVER)
              for one in EFFECTS['thrust_scale'].forms}
     assert rests['exponent'] < 0.02 < LEAST < rests['factor']
@@ -79,7 +73,7 @@ def followed(turn, command):
 @pytest.mark.slow
 @pytest.mark.parametrize('form', EVALUATION['motor_lag'])
 def test_a_motor_is_no_lag_of_the_library(form):
-    motor, (command, t) = made('motor_lag', form), commands()
+    motor, (command, t) = made('motor_lag', form, SIZE), commands()
     true = followed(lambda w, c: motor.turn(w, c, STEP_OF_MOTORS), command)
 
     def missed(speeds):
@@ -110,14 +104,14 @@ def test_a_motor_is_no_lag_of_the_library(form):
 
 @pytest.mark.parametrize('form', EVALUATION['actuation_delay'])
 def test_a_delay_is_not_constant(form):
-    line = made('actuation_delay', form)
+    line = made('actuation_delay', form, SIZE)
     waits = [line.waits(t) for t in np.arange(0.0, 20.0, 0.01)]
     assert np.std(waits) / np.mean(waits) > LEAST
 
 
 @pytest.mark.parametrize('form', EVALUATION['wind'])
 def test_a_wind_is_not_the_same_everywhere_and_at_all_times(form):
-    wind, rng = made('wind', form), np.random.default_rng(2)
+    wind, rng = made('wind', form, SIZE), np.random.default_rng(2)
     places = np.column_stack([rng.uniform(-1.5, 1.5, (COUNT, 2)), rng.uniform(0.1, 2.0, COUNT)])
     air = np.array([wind.wind(STEP * k, place) for k, place in enumerate(places)])
     assert np.linalg.norm(air.std(axis=0)) > LEAST * np.linalg.norm(air.mean(axis=0))
@@ -125,7 +119,7 @@ def test_a_wind_is_not_the_same_everywhere_and_at_all_times(form):
 
 @pytest.mark.parametrize('form', EVALUATION['inertia_mismatch'])
 def test_inertia_that_does_not_turn_with_the_body_is_no_factor_on_the_inertia(form):
-    moment = of_part(made('inertia_mismatch', form), PARAMS, PLACES, FLIGHT)[:, 3:]
+    moment = of_part(made('inertia_mismatch', form, SIZE), PARAMS, PLACES, FLIGHT)[:, 3:]
     slopes = np.gradient(FLIGHT['rate'], STEP, axis=0)
     for axis in range(3):
         share = slopes[:, axis] @ moment[:, axis] / (slopes[:, axis] @ slopes[:, axis])
@@ -135,7 +129,7 @@ def test_inertia_that_does_not_turn_with_the_body_is_no_factor_on_the_inertia(fo
 
 @pytest.mark.parametrize('form', EVALUATION['com_offset'])
 def test_a_centre_that_moves_is_no_constant_offset(form):
-    part, true = made('com_offset', form), fresh()
+    part, true = made('com_offset', form, SIZE), fresh()
     part.alter(true, PARAMS)
     flight = FLIGHT | {'rotation': LEANS.as_matrix(), 'position': WAY}
     moment = of_part(part, PARAMS, PLACES, flight)[:, 3:5]
@@ -160,7 +154,7 @@ def heave(part):
 
 @pytest.mark.parametrize('form', EVALUATION['mass_offset'])
 def test_a_load_is_no_mass_that_stays(form):
-    part, true, weights, pulls = made('mass_offset', form), fresh(), [], []
+    part, true, weights, pulls = made('mass_offset', form, SIZE), fresh(), [], []
     part.alter(true, PARAMS)
     for seed in FLIGHTS:
         part.begin(np.random.default_rng(seed))
@@ -176,7 +170,7 @@ def test_a_load_is_no_mass_that_stays(form):
 
 @pytest.mark.parametrize('form', EVALUATION['rotor_gyro'])
 def test_the_momentum_of_rotors_is_not_that_of_two_inertias(form):
-    moment = of_part(made('rotor_gyro', form), PARAMS, PLACES, FLIGHT)[:, 3:]
+    moment = of_part(made('rotor_gyro', form, SIZE), PARAMS, PLACES, FLIGHT)[:, 3:]
     p, q, _ = FLIGHT['rate'].T
     ours = []
     for spin in (1.0, -1.0):
@@ -190,7 +184,7 @@ def test_the_momentum_of_rotors_is_not_that_of_two_inertias(form):
 
 @pytest.mark.parametrize('form', EVALUATION['gyro_bias'])
 def test_a_bias_is_not_constant(form):
-    part = made('gyro_bias', form)
+    part = made('gyro_bias', form, SIZE)
     thrusts, rates = np.mean((FLIGHT['speeds'] / HOVER) ** 2, axis=1), FLIGHT['rate']
     bias = np.array([
         part.measured(t, np.array([*place, *velocity, *attitude, *rate]), thrust)[10:] - rate
@@ -201,7 +195,7 @@ def test_a_bias_is_not_constant(form):
 
 @pytest.mark.parametrize('form', EVALUATION['attitude_misalignment'])
 def test_a_tilt_is_not_that_of_an_attitude_or_of_a_block(form):
-    part, turns = made('attitude_misalignment', form), []
+    part, turns = made('attitude_misalignment', form, SIZE), []
     thrusts, rates = np.mean((FLIGHT['speeds'] / HOVER) ** 2, axis=1), FLIGHT['rate']
     seen = np.array([
         part.measured(t, np.array([*place, *velocity, *attitude, *rate]), thrust)

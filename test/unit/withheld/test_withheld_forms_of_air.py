@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from test_withheld_forms import instant, made, PARAMS, PLACES
+from withheld_parts import instant, made, PARAMS, PLACES
 
 from withheld.constants import AIR_DENSITY, GRAVITY
 from withheld.forms import blades, floors, flows

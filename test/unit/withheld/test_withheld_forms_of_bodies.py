@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from test_withheld_forms import fresh, HOVER, instant, made, PARAMS
+from withheld_parts import fresh, HOVER, instant, made, PARAMS
 
 from withheld.constants import GRAVITY
 from withheld.forms import carried, damage, readings

@@ -2,24 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """The forms that the fifteenth draw is the first to fly: what each does."""
 
-from dataclasses import replace
 
 import numpy as np
 import pytest
-from test_withheld_forms import HOVER, instant, made, PARAMS
+from withheld_parts import HOVER, instant, made, PARAMS, turning
 
 from withheld.constants import GRAVITY
 from withheld.forms import aboard, clutches, disks, profiles, swings
-
-
-def turning(part, turn, seconds, step=0.01, **others):
-    """Let a part see rotors of a speed over that in hover for some seconds; return the Instant."""
-    now = instant(velocity=(0.0, 0.0, 0.0), turn=np.full(4, turn), rate=(0.0, 0.0, 0.0))
-    now = replace(now, **others)
-    for _ in range(round(seconds / step)):
-        part.gain(now), part.wrench(now)
-        part.after(step, np.eye(3), np.zeros(3))
-    return now
 
 
 def test_a_motor_with_a_profile_takes_as_long_as_the_root_of_its_step():

@@ -7,8 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from test_withheld_forms import HOVER, instant, made, PARAMS
-from test_withheld_forms_of_draw_15 import turning
+from withheld_parts import HOVER, instant, made, PARAMS, turning
 
 from withheld.forms import brakes, changing, hubs, shades
 

@@ -7,14 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from test_withheld_forms import HOVER, instant, made, PARAMS, PLACES
-from test_withheld_forms_of_draw_15 import turning
+from withheld_parts import HOVER, instant, made, PARAMS, PLACES, REST, turning
 
 from withheld.constants import GRAVITY
 from withheld.forms import gears, lips, notches, straps
 from withheld.forms.radios import wandering
-
-REST = np.zeros(3)
 
 
 def test_a_notch_lets_a_step_come_and_takes_part_of_it_back_for_a_while():

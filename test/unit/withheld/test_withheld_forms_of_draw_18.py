@@ -7,17 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from test_withheld_forms import HOVER, instant, made, PARAMS, PLACES
-from test_withheld_forms_of_draw_15 import turning
+from withheld_parts import HOVER, instant, made, PARAMS, PLACES, REST, still, turning
 
 from withheld.constants import GRAVITY
 from withheld.forms import buses, couplings, decks, foams, loops, phases, polars, towed
-
-REST = np.zeros(3)
-
-
-def still(**others):
-    return replace(instant(velocity=REST, rate=REST, turn=np.ones(4)), **others)
 
 
 def test_an_integral_winds_up_in_a_large_step_alone():

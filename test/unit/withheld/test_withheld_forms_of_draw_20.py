@@ -2,22 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """The forms that the twentieth draw is the first to fly: what each does."""
 
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from test_withheld_forms import fresh, HOVER, instant, made, PARAMS, PLACES
-from test_withheld_forms_of_draw_15 import turning
+from withheld_parts import fresh, HOVER, instant, made, PARAMS, PLACES, REST, still, turning
 
 from withheld.constants import GRAVITY
 from withheld.forms import adapting, hollows, oils, pitches, twists
-
-REST = np.zeros(3)
-
-
-def still(**others):
-    return replace(instant(velocity=REST, rate=REST, turn=np.ones(4)), **others)
 
 
 def test_a_controller_is_keener_after_large_errors_than_after_a_calm_spell():

@@ -2,23 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """The forms that the twenty-first draw is the first to fly: what each does."""
 
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from test_withheld_forms import fresh, HOVER, instant, made, PARAMS, PLACES
-from test_withheld_forms_of_draw_15 import turning
+from withheld_parts import fresh, HOVER, instant, LIFT, made, PARAMS, PLACES, REST, still, turning
 
 from withheld.constants import GRAVITY
 from withheld.forms import dampers, gains, multiples, vanes
-
-REST = np.zeros(3)
-LIFT = PARAMS['k_eta'] * 4.0 * HOVER ** 2
-
-
-def still(**others):
-    return replace(instant(velocity=REST, rate=REST, turn=np.ones(4)), **others)
 
 
 def test_a_controller_changes_to_keener_gains_above_a_speed_and_back_below_another():

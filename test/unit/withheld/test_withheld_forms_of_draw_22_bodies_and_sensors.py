@@ -2,34 +2,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """Forms of bodies, rotors and sensors that the twenty-second draw is the first to fly."""
 
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from test_withheld_forms import fresh, HOVER, instant, PARAMS, PLACES
-from test_withheld_forms_of_draw_15 import turning
+from withheld_parts import fresh, HOVER, LIFT, PARAMS, part_of, PLACES, REST, still, turning
 
 from withheld import outside
 from withheld.forms import aerials, closures, gels, interactions, liquids, tools
 
-REST = np.zeros(3)
-LIFT = PARAMS['k_eta'] * 4.0 * HOVER ** 2
-
-
-def made(kind, size=2.0):
-    part = kind(size, PARAMS, np.random.default_rng(3))
-    part.begin(np.random.default_rng(4))
-    part.alter(fresh(), PARAMS)
-    return part
-
-
-def still(**others):
-    return replace(instant(velocity=REST, rate=REST, turn=np.ones(4)), **others)
-
 
 def test_a_gel_comes_along_with_all_that_the_body_gives_it():
-    part, step, given = made(gels.Thixotropic), 1e-4, np.zeros(3)
+    part, step, given = part_of(gels.Thixotropic), 1e-4, np.zeros(3)
     now = still(rate=np.array([0.8, 0.0, -0.4]))
     for _ in range(20000):
         given -= step * part.wrench(now)[1]
@@ -39,7 +23,7 @@ def test_a_gel_comes_along_with_all_that_the_body_gives_it():
 
 
 def test_a_gel_thins_as_it_is_sheared_and_sets_again_at_rest():
-    part, t = made(gels.Thixotropic), np.arange(0.0, 6.0, 0.005)
+    part, t = part_of(gels.Thixotropic), np.arange(0.0, 6.0, 0.005)
     assert part._grips() == pytest.approx(1.0 / part.FIRM)
     grips = []
     for one in t:
@@ -56,7 +40,7 @@ def test_a_gel_thins_as_it_is_sheared_and_sets_again_at_rest():
 
 
 def test_a_tool_stays_over_its_place_until_it_is_out_of_reach():
-    part, speed, step = made(tools.Stippling), 0.2, 0.01
+    part, speed, step = part_of(tools.Stippling), 0.2, 0.01
     turn, places, shifts = Rotation.from_euler('z', 0.7), [], []
     velocity = turn.apply([speed, 0.0, 0.0])
     now = still(velocity=velocity, rotation=turn.as_matrix())
@@ -76,14 +60,14 @@ def test_a_tool_stays_over_its_place_until_it_is_out_of_reach():
 
 
 def test_a_tool_is_held_below_in_hover():
-    part, mean = made(tools.Stippling), fresh()
+    part, mean = part_of(tools.Stippling), fresh()
     part.alter(mean, PARAMS)
     assert mean['centre'] == pytest.approx(part.centre)
     assert part.wrench(turning(part, 1.0, 3.0))[1] == pytest.approx(REST)
 
 
 def test_a_motor_whose_phases_are_switched_at_a_wrong_angle_is_right_at_one_speed():
-    part, losses = made(aerials.Mistimed), []
+    part, losses = part_of(aerials.Mistimed), []
     assert abs(part.right - 1.0) == pytest.approx(part.OFF)
     for off in (0.0, 0.1, -0.1, 0.2, 0.5, -0.5):
         now = still(speeds=np.full(4, (part.right + off) * HOVER))
@@ -96,7 +80,7 @@ def test_a_motor_whose_phases_are_switched_at_a_wrong_angle_is_right_at_one_spee
 
 
 def test_a_rotor_loses_most_where_the_wake_of_an_aerial_falls_onto_it():
-    part, (x, y) = made(aerials.Masked), made(aerials.Masked).towards
+    part, (x, y) = part_of(aerials.Masked), part_of(aerials.Masked).towards
 
     def lost(*air):
         gain = part.gain(still(air=np.array(air)))
@@ -115,7 +99,7 @@ def test_a_rotor_loses_most_where_the_wake_of_an_aerial_falls_onto_it():
 
 
 def test_a_liquid_turns_along_later_and_takes_up_its_momentum():
-    part, true = made(liquids.Filled), fresh()
+    part, true = part_of(liquids.Filled), fresh()
     part.alter(true, PARAMS)
     assert true['rotor_inertia'] == pytest.approx(part.OWN * part.inertia)
     ring = (1.0 - part.OWN) * part.inertia
@@ -133,7 +117,7 @@ def test_a_liquid_turns_along_later_and_takes_up_its_momentum():
 
 
 def test_a_liquid_comes_along_sooner_in_a_fast_ring():
-    part, lefts = made(liquids.Filled), []
+    part, lefts = part_of(liquids.Filled), []
     for turn in (0.64, 1.44):
         part.begin(None)
         turning(part, turn, 0.1)
@@ -144,7 +128,7 @@ def test_a_liquid_comes_along_sooner_in_a_fast_ring():
 
 
 def test_wheels_in_a_wake_resist_a_turn_and_nothing_else():
-    part, true = made(liquids.Wheeled), fresh()
+    part, true = part_of(liquids.Wheeled), fresh()
     part.alter(true, PARAMS)
     assert true['rotor_inertia'] == pytest.approx(part.OWN * part.inertia)
     wheels, turn = (1.0 - part.OWN) * part.inertia, np.array([1.1, 0.9, 1.1, 0.9])
@@ -162,7 +146,7 @@ def test_wheels_in_a_wake_resist_a_turn_and_nothing_else():
 
 
 def test_rotors_behind_sink_most_at_a_speed_and_by_how_they_stand():
-    part, takes = made(interactions.Interfering), []
+    part, takes = part_of(interactions.Interfering), []
     for speed in (0.25, 1.0, 4.0, 100.0):
         fast = speed * part.most
         force, moment = part.wrench(still(air=np.array([fast, 0.0, 0.0])))
@@ -174,7 +158,7 @@ def test_rotors_behind_sink_most_at_a_speed_and_by_how_they_stand():
 
 
 def test_rotors_that_sink_are_those_behind():
-    part = made(interactions.Interfering)
+    part = part_of(interactions.Interfering)
     for angle in np.arange(0.0, 2.0 * np.pi, 0.25 * np.pi):
         onto = np.array([np.cos(angle), np.sin(angle)])
         sinks = part.sinking(PLACES, onto)
@@ -193,7 +177,7 @@ def test_rotors_that_sink_are_those_behind():
 
 @pytest.mark.slow
 def test_a_tilt_grows_with_the_way_until_a_place_is_known():
-    part, shares = made(closures.Closing), []
+    part, shares = part_of(closures.Closing), []
     state = np.array([0.0, 0.0, 1.0, 0.6, 0.0, 0.8, 0.0, 0.0, 0.0, 1.0, 0.1, 0.2, 0.3])
     ways = np.arange(0.0, 600.0, 0.05)
     for way in ways:
@@ -213,7 +197,7 @@ def test_a_tilt_grows_with_the_way_until_a_place_is_known():
 
 
 def test_a_coil_is_off_while_heat_goes_through_it_and_not_as_it_is_warm():
-    part, a, b = made(closures.Graded), closures.Graded.SHELL, closures.Graded.COIL
+    part, a, b = part_of(closures.Graded), closures.Graded.SHELL, closures.Graded.COIL
     heat, state = 1.2 ** 1.5, np.zeros(13)
     for t in np.arange(0.0, 80.0, 0.01):
         out = part.measured(t, state, 1.2)

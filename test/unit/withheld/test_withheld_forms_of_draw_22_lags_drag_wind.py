@@ -2,31 +2,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """Forms of lags, delays, drag and wind that the twenty-second draw flies: what each does."""
 
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from test_withheld_forms import HOVER, instant, PARAMS
-from test_withheld_forms_of_draw_15 import turning
+from withheld_parts import HOVER, PARAMS, part_of, REST, still, turning
 
 from withheld.forms.belts import Belted, FieldWeakened
 from withheld.forms.corners import Corner, Draughty
 from withheld.forms.exposures import Compiling, Exposing
 from withheld.forms.stacks import Stacked
 from withheld.forms.tandems import Radiating, Tandem
-
-REST = np.zeros(3)
-
-
-def part_of(kind, size):
-    part = kind(size, PARAMS, np.random.default_rng(3))
-    part.begin(np.random.default_rng(4))
-    return part
-
-
-def still(**others):
-    return replace(instant(velocity=REST, rate=REST, turn=np.ones(4)), **others)
 
 
 def test_a_propeller_on_a_belt_swings_past_its_motor_but_is_no_later_in_the_mean():

@@ -2,13 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Forms of thrust, ground, battery and mass that the twenty-second draw is the first to fly."""
 
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from test_withheld_forms import fresh, HOVER, instant, PARAMS
-from test_withheld_forms_of_draw_15 import turning
+from withheld_parts import drained, fresh, HOVER, instant, PARAMS, part_of, still, turning, WEIGHT
 
 from withheld.constants import GRAVITY
 from withheld.forms import (
@@ -23,22 +21,9 @@ from withheld.forms import (
     winches,
 )
 
-REST = np.zeros(3)
-WEIGHT = PARAMS['mass'] * GRAVITY
-
-
-def still(**others):
-    return replace(instant(velocity=REST, rate=REST, turn=np.ones(4)), **others)
-
-
-def made(kind, size=2.0):
-    part = kind(size, PARAMS, np.random.default_rng(3))
-    part.begin(np.random.default_rng(4))
-    return part
-
 
 def test_flow_from_ahead_lifts_rotors_across_more_than_that_from_behind():
-    rotor = made(cyclorotors.Cycloidal)
+    rotor = part_of(cyclorotors.Cycloidal)
 
     def change(*air):
         gains = rotor.gain(still(air=rotor.induced * np.array(air)))
@@ -57,14 +42,14 @@ def test_flow_from_ahead_lifts_rotors_across_more_than_that_from_behind():
 
 def test_flow_is_measured_by_what_a_rotor_moves_itself():
     for kind in (cyclorotors.Cycloidal, lids.Lidded):
-        rotor, air = made(kind), np.array([0.8, -0.5, 0.3])
+        rotor, air = part_of(kind), np.array([0.8, -0.5, 0.3])
         slow = rotor.gain(still(air=air))
         fast = rotor.gain(still(air=1.2 * air, speeds=np.full(4, 1.2 * HOVER)))
         assert fast == pytest.approx(slow)
 
 
 def test_a_plate_above_is_held_up_until_flow_from_the_side_fills_the_gap():
-    rotor, losses = made(lids.Lidded), []
+    rotor, losses = part_of(lids.Lidded), []
     for speed in (0.0, rotor.WIDE, 1.0, 2.0):
         here = [rotor.gain(still(air=speed * rotor.induced * np.array(
             [np.cos(angle), np.sin(angle), 0.0])))[0] for angle in (0.0, 1.0, 4.0)]
@@ -75,7 +60,7 @@ def test_a_plate_above_is_held_up_until_flow_from_the_side_fills_the_gap():
 
 
 def test_a_plate_above_takes_from_what_a_climb_changes():
-    rotor = made(lids.Lidded)
+    rotor = part_of(lids.Lidded)
     up, down = ((rotor.gain(still(air=np.array([0.0, 0.0, z * rotor.induced])))[0] - 1.0) / 2.0
                 for z in (0.3, -0.3))
     assert down == pytest.approx(0.3 * rotor.TAKES)
@@ -83,7 +68,7 @@ def test_a_plate_above_takes_from_what_a_climb_changes():
 
 
 def test_a_belly_rides_on_what_flight_presses_below_it():
-    part = made(bellies.Rammed)
+    part = part_of(bellies.Rammed)
 
     def lift(x, y, height):
         now = still(air=np.array([x, y, 0.4]) * part.induced, heights=np.full(4, height))
@@ -110,7 +95,7 @@ def test_a_belly_rides_on_what_flight_presses_below_it():
 
 
 def test_only_jets_that_are_strong_enough_tear_spray_from_water():
-    part, losses = made(sprays.Sprayed), []
+    part, losses = part_of(sprays.Sprayed), []
     # Where the jet of a rotor in hover tears no more.
     edge = -part.radius * np.log(part.TEARS) / part.JET
     for turn, height in ((1.0, 1.01 * edge), (1.0, 0.5 * edge), (1.2, 0.5 * edge), (1.2, edge)):
@@ -124,7 +109,7 @@ def test_only_jets_that_are_strong_enough_tear_spray_from_water():
 
 
 def test_spray_comes_late_and_flight_leaves_it_behind():
-    part, near = made(sprays.Sprayed), {'heights': np.full(4, 0.1)}
+    part, near = part_of(sprays.Sprayed), {'heights': np.full(4, 0.1)}
     first = part.gain(still(**near))
     assert first == pytest.approx(np.full(4, 1.0 + 2.0 * part.GAIN * np.exp(-part.FADES)))
     turning(part, 1.0, part.TIME, **near)
@@ -140,18 +125,14 @@ def test_spray_comes_late_and_flight_leaves_it_behind():
     assert part._spray[0] == part._spray[2] > 0.1 and not np.any(part._spray[[1, 3]])
 
 
-def drained(battery, loads, step=0.01):
+def sagged(battery, loads, step=0.01):
     """Return the sags over the size, for loads over that in hover."""
-    sags = []
-    for k, load in enumerate(loads):
-        battery.drain(step * k, step, np.full(4, load ** (1.0 / 3.0)))
-        sags.append((1.0 - battery.ratio) / battery.size)
-    return np.array(sags)
+    return (1.0 - drained(battery, np.power(loads, 1.0 / 3.0), step)) / battery.size
 
 
 def test_cells_of_sulphur_step_to_a_lower_plateau_behind_a_dip():
-    battery = made(sulphur.TwoPlateaus)
-    sags = drained(battery, np.ones(3000))
+    battery = part_of(sulphur.TwoPlateaus)
+    sags = sagged(battery, np.ones(3000))
     taken = np.arange(1, 3001) / 3000
     plain = sags - battery.RESISTS - battery.FALLS * taken
     assert plain[0] == pytest.approx(0.0, abs=1e-4)
@@ -165,20 +146,20 @@ def test_cells_of_sulphur_step_to_a_lower_plateau_behind_a_dip():
 def test_cells_of_sulphur_resist_most_in_the_dip_and_go_by_the_charge():
     resists = []
     for charge in (0.0, sulphur.TwoPlateaus.FROM + sulphur.TwoPlateaus.WIDE, 1.0):
-        battery = made(sulphur.TwoPlateaus)
+        battery = part_of(sulphur.TwoPlateaus)
         drained(battery, np.ones(round(3000 * charge)))
-        low, high = drained(battery, [0.5, 1.5], step=1e-6)
+        low, high = sagged(battery, [0.5, 1.5], step=1e-6)
         resists.append(high - low)
     own = battery.RESISTS
     assert resists == pytest.approx([own, own * (1.0 + battery.MORE), own], rel=5e-3)
-    slow, fast = made(sulphur.TwoPlateaus), made(sulphur.TwoPlateaus)
-    one, other = drained(slow, np.ones(2000))[-1], drained(fast, np.full(1000, 2.0))[-1]
+    slow, fast = part_of(sulphur.TwoPlateaus), part_of(sulphur.TwoPlateaus)
+    one, other = sagged(slow, np.ones(2000))[-1], sagged(fast, np.full(1000, 2.0))[-1]
     assert slow._taken == pytest.approx(fast._taken)
     assert other - one == pytest.approx(own, rel=0.1)
 
 
 def test_an_engine_starts_when_the_pack_is_low_and_stops_when_it_is_full():
-    battery, taken, runs = made(extenders.Extended), [], []
+    battery, taken, runs = part_of(extenders.Extended), [], []
     for k in range(12000):
         battery.drain(0.01 * k, 0.01, np.ones(4))
         taken.append(battery._taken), runs.append(battery._since is not None)
@@ -197,8 +178,8 @@ def test_an_engine_starts_when_the_pack_is_low_and_stops_when_it_is_full():
 
 
 def test_a_starter_takes_before_the_engine_gives():
-    battery = made(extenders.Extended)
-    sags = drained(battery, np.ones(1200))
+    battery = part_of(extenders.Extended)
+    sags = sagged(battery, np.ones(1200))
     start = int(np.ceil(30.0 * battery.LOW / 0.01)) + 1
     rest = sags[start - 3] - battery.FALLS * battery.LOW
     cranks = sags[start + 5] - battery.FALLS * battery.LOW
@@ -212,7 +193,7 @@ def test_a_starter_takes_before_the_engine_gives():
 
 
 def test_the_air_of_a_chamber_leaks_in_slowly_and_is_pumped_out_faster():
-    part = made(chambers.Chambered)
+    part = part_of(chambers.Chambered)
     t = np.arange(0.0, 10.0 * (part.LEAKS + part.PUMPS), 0.01)
     missing = np.array([(part.density(one) - 1.0) / part.share for one in t])
     assert np.mean(missing) == pytest.approx(1.0, abs=1e-3) and part.share < 0.0
@@ -229,7 +210,7 @@ def test_the_air_of_a_chamber_leaks_in_slowly_and_is_pumped_out_faster():
 
 
 def test_a_basket_fills_and_each_stem_pulls_until_it_breaks():
-    part, mean = made(orchards.Picking), made(orchards.Picking).parameters['mass']
+    part, mean = part_of(orchards.Picking), part_of(orchards.Picking).parameters['mass']
     t = np.arange(0.0, 40.0, 0.01)
     masses = np.array([part.mass(one) for one in t]) / mean
     assert masses[0] == pytest.approx(part.BASKET) and np.all(np.diff(masses) >= 0.0)
@@ -257,7 +238,7 @@ def held(part, accelerations, step=0.01):
 
 
 def test_a_clutch_holds_up_to_a_pull_and_lets_the_load_catch_up():
-    part, true = made(winches.PayingOut), fresh()
+    part, true = part_of(winches.PayingOut), fresh()
     part.alter(true, PARAMS)
     assert true['mass'] == pytest.approx(PARAMS['mass'] + part.parameters['mass'])
     slips = part.SLIPS
@@ -275,7 +256,7 @@ def test_a_clutch_holds_up_to_a_pull_and_lets_the_load_catch_up():
 
 
 def test_a_load_whose_clutch_slips_hangs_along_the_body():
-    part, leans = made(winches.PayingOut), Rotation.from_euler('x', 0.5).as_matrix()
+    part, leans = part_of(winches.PayingOut), Rotation.from_euler('x', 0.5).as_matrix()
     part.after(0.01, leans, 3.0 * leans[:, 2] + [0.0, 0.0, -GRAVITY] + GRAVITY * leans[:, 2])
     force, moment = part.wrench(still(rotation=leans))
     assert force == pytest.approx([0.0, 0.0, part.parameters['mass'] * (3.0 - part.SLIPS)])

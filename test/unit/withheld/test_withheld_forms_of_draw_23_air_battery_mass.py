@@ -2,13 +2,21 @@
 # SPDX-License-Identifier: Apache-2.0
 """Forms of thrust, ground, battery and mass that the twenty-third draw is the first to fly."""
 
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from test_withheld_forms import fresh, HOVER, instant, PARAMS, PLACES
-from test_withheld_forms_of_draw_15 import turning
+from withheld_parts import (
+    drained,
+    fresh,
+    HOVER,
+    PARAMS,
+    part_of,
+    PLACES,
+    REST,
+    still,
+    turning,
+)
 
 from withheld.constants import GRAVITY
 from withheld.forms.brushes import OpenLoop
@@ -21,22 +29,10 @@ from withheld.forms.rimes import Rimed
 from withheld.forms.tethers import Tethered
 from withheld.forms.windings import Warmed
 
-REST = np.zeros(3)
-
-
-def still(**others):
-    return replace(instant(velocity=REST, rate=REST, turn=np.ones(4)), **others)
-
-
-def made(kind, size=2.0, seed=3):
-    part = kind(size, PARAMS, np.random.default_rng(seed))
-    part.begin(np.random.default_rng(seed + 1))
-    return part
-
 
 @pytest.mark.parametrize('kind', [Upwashed, Downloaded])
 def test_flow_is_measured_by_what_a_rotor_moves_itself_and_rest_is_nothing(kind):
-    rotor, air = made(kind), np.array([0.8, -0.5, 0.3])
+    rotor, air = part_of(kind), np.array([0.8, -0.5, 0.3])
     slow = rotor.gain(still(air=air))
     fast = rotor.gain(still(air=1.2 * air, speeds=np.full(4, 1.2 * HOVER)))
     assert fast == pytest.approx(slow) and np.ptp(slow) > 1e-3
@@ -44,7 +40,7 @@ def test_flow_is_measured_by_what_a_rotor_moves_itself_and_rest_is_nothing(kind)
 
 
 def test_air_around_a_parcel_slides_along_it_and_is_not_squeezed():
-    part, velocity, step = made(Upwashed), np.array([2.0, -1.0, 0.5]), 1e-5
+    part, velocity, step = part_of(Upwashed), np.array([2.0, -1.0, 0.5]), 1e-5
     for way in np.random.default_rng(1).normal(size=(10, 3)):
         out = way / np.linalg.norm(way)
         skin = part.middle + part.wide * out
@@ -61,7 +57,7 @@ def test_air_around_a_parcel_slides_along_it_and_is_not_squeezed():
 
 
 def test_a_parcel_lifts_rotors_in_front_as_much_as_it_takes_behind():
-    part, speed = made(Upwashed), 0.3
+    part, speed = part_of(Upwashed), 0.3
     gains = part.gain(still(air=np.array([speed * part.induced, 0.0, 0.0])))
     back = part.gain(still(air=np.array([-speed * part.induced, 0.0, 0.0])))
     front, behind = gains[PLACES[:, 0] > 0.0], gains[PLACES[:, 0] < 0.0]
@@ -75,7 +71,7 @@ def test_a_parcel_lifts_rotors_in_front_as_much_as_it_takes_behind():
 
 
 def test_a_climb_meets_more_air_beside_a_parcel():
-    part = made(Upwashed)
+    part = part_of(Upwashed)
     up, down = (part.gain(still(air=np.array([0.0, 0.0, z * part.induced]))) for z in (0.4, -0.4))
     assert np.ptp(up) < 1e-12 and np.ptp(down) < 1e-12
     less, more = 1.0 - up[0], down[0] - 1.0
@@ -84,7 +80,7 @@ def test_a_climb_meets_more_air_beside_a_parcel():
 
 
 def test_how_much_of_an_arm_is_in_the_wake_by_points_on_it():
-    part, long = made(Downloaded), 1.7
+    part, long = part_of(Downloaded), 1.7
     points = np.linspace(0.0, long, 20001)
     for inwards, across in ((0.0, 0.0), (0.4, 0.0), (-0.4, 0.0), (1.2, 0.3), (0.1, 0.7),
                             (0.0, 1.0), (-1.0, 0.0), (3.0, 0.0)):
@@ -94,7 +90,7 @@ def test_how_much_of_an_arm_is_in_the_wake_by_points_on_it():
 
 
 def test_flight_takes_the_wake_off_arms_across_and_onto_those_ahead():
-    part, arm = made(Downloaded), PLACES[0, :2] / np.linalg.norm(PLACES[0, :2])
+    part, arm = part_of(Downloaded), PLACES[0, :2] / np.linalg.norm(PLACES[0, :2])
 
     def change(air):
         return (part.gain(still(air=part.induced * np.array([*air, 0.0]))) - 1.0) / 2.0
@@ -109,7 +105,7 @@ def test_flight_takes_the_wake_off_arms_across_and_onto_those_ahead():
 
 
 def test_a_climb_presses_with_the_square_of_the_flow():
-    part = made(Downloaded)
+    part = part_of(Downloaded)
     for climb in (-0.5, -0.1, 0.2, 0.6):
         gain = part.gain(still(air=np.array([0.0, 0.0, climb * part.induced])))
         assert gain == pytest.approx(np.full(4, 1.0 - 2.0 * part.PRESSES * (
@@ -117,7 +113,7 @@ def test_a_climb_presses_with_the_square_of_the_flow():
 
 
 def test_ducts_have_most_of_the_ground_at_a_radius():
-    part = made(Choked)
+    part = part_of(Choked)
     heights = np.linspace(0.5, 12.0, 2000)
     gains = np.array([part.gain(still(heights=np.full(4, one * part.radius)))[0]
                       for one in heights])
@@ -134,7 +130,7 @@ def test_ducts_have_most_of_the_ground_at_a_radius():
 
 
 def test_slow_flight_clears_the_outlets_and_fast_flight_takes_the_cushion():
-    part, gains = made(Choked), []
+    part, gains = part_of(Choked), []
     for speed in (0.0, 0.2, part.CLEARS, 2.0, 8.0):
         ways = [part.gain(still(heights=np.full(4, 0.06), air=speed * part.induced * np.array(
             [np.cos(angle), np.sin(angle), 0.0])))[0] for angle in (0.0, 1.0, 4.0)]
@@ -145,7 +141,7 @@ def test_slow_flight_clears_the_outlets_and_fast_flight_takes_the_cushion():
 
 
 def test_a_grating_holds_what_comes_askew_across_its_bars():
-    part = made(Grated)
+    part = part_of(Grated)
     along = np.array([-part.across[1], part.across[0], 0.0])
     for speed in (0.1, 0.4, 1.0, 3.0):
         for turned in (np.eye(3), Rotation.from_euler('z', 1.1).as_matrix()):
@@ -159,7 +155,7 @@ def test_a_grating_holds_what_comes_askew_across_its_bars():
 
 
 def test_a_grating_gives_what_it_holds_and_the_floor_below_the_rest():
-    part = made(Grated)
+    part = part_of(Grated)
     near, deep = part.GAIN / 2.0 ** 2, part.GAIN / (2.0 + part.FLOOR) ** 2
     rest = (part.gain(still(heights=np.full(4, part.radius))) - 1.0) / 2.0
     assert rest == pytest.approx(np.full(4, part.HOLDS * near + (1.0 - part.HOLDS) * deep))
@@ -170,17 +166,13 @@ def test_a_grating_gives_what_it_holds_and_the_floor_below_the_rest():
     assert np.all(np.diff(gains) < 0.0)
 
 
-def drained(battery, turns, step=0.01):
+def sagged(battery, turns, step=0.01):
     """Return the sags over the size, for speeds of all rotors over that in hover."""
-    sags = []
-    for k, turn in enumerate(turns):
-        battery.drain(step * k, step, np.full(4, turn))
-        sags.append((1.0 - battery.ratio) / battery.size)
-    return np.array(sags)
+    return (1.0 - drained(battery, turns, step)) / battery.size
 
 
 def test_a_voltage_is_what_the_speed_and_what_the_current_take():
-    battery = made(OpenLoop)
+    battery = part_of(OpenLoop)
     battery.ratio = 0.9
     for turns in (np.full(4, 0.7), np.ones(4), np.array([0.8, 1.3, 1.0, 1.1])):
         gains = battery.gain(turns)
@@ -192,7 +184,7 @@ def test_a_voltage_is_what_the_speed_and_what_the_current_take():
 
 
 def test_fast_rotors_and_worn_brushes_lose_less_of_a_sag():
-    battery = made(OpenLoop)
+    battery = part_of(OpenLoop)
     battery.ratio = 0.95
     gains = np.array([battery.gain(np.full(4, turn)) for turn in (0.6, 0.8, 1.0, 1.3)])
     assert np.all(np.diff(gains, axis=0) > 0.0)
@@ -205,33 +197,33 @@ def test_fast_rotors_and_worn_brushes_lose_less_of_a_sag():
 
 
 def test_a_cell_of_small_motors_falls_by_what_they_draw():
-    battery = made(OpenLoop)
-    sags = drained(battery, np.ones(3000))
+    battery = part_of(OpenLoop)
+    sags = sagged(battery, np.ones(3000))
     assert sags[0] == pytest.approx(battery.RESISTS, rel=1e-3)
     assert sags[-1] == pytest.approx(battery.RESISTS + battery.FALLS)
-    more = drained(made(OpenLoop), [1.2], step=1e-9)[0]
+    more = sagged(part_of(OpenLoop), [1.2], step=1e-9)[0]
     assert more / battery.RESISTS == pytest.approx(1.2 ** 2 * np.mean(
         battery.share(np.full(4, 1.2))))
 
 
 def test_a_cold_cell_is_driven_by_the_inverse_sine_of_its_load():
     for load in (0.1, 0.5, 1.0, 2.0):
-        battery = made(Kinetic)
-        sag = drained(battery, [load ** (1.0 / 3.0)], step=1e-9)[0]
+        battery = part_of(Kinetic)
+        sag = sagged(battery, [load ** (1.0 / 3.0)], step=1e-9)[0]
         assert np.sinh(sag / battery.DRIVES) == pytest.approx(load / (2.0 * battery.EXCHANGES))
     # Warm, it is nearly a resistance; cold, a small load has most already.
     shares = []
     for heat in (0.0, 2.0):
-        small, large = (made(Kinetic), made(Kinetic))
+        small, large = (part_of(Kinetic), part_of(Kinetic))
         small._heat = large._heat = heat
-        shares.append(drained(small, [0.5 ** (1.0 / 3.0)])[0] / drained(large, [1.0])[0])
+        shares.append(sagged(small, [0.5 ** (1.0 / 3.0)])[0] / sagged(large, [1.0])[0])
     assert 0.5 < shares[1] < shares[0] and shares[0] > 0.65
     assert small.gain(np.ones(4)) == pytest.approx(small.ratio ** 1.8)
 
 
 def test_a_cold_cell_recovers_as_it_warms_and_then_falls():
-    battery = made(Kinetic)
-    sags = drained(battery, np.ones(6000))
+    battery = part_of(Kinetic)
+    sags = sagged(battery, np.ones(6000))
     lowest = int(np.argmin(sags))
     assert 800 < lowest < 5000 and sags[0] > sags[lowest] + 0.005 and sags[-1] > sags[lowest]
     warm = battery.DRIVES * np.arcsinh(
@@ -243,7 +235,7 @@ def test_a_cold_cell_recovers_as_it_warms_and_then_falls():
 
 
 def test_motors_lose_more_as_they_warm_each_as_it_is_cooled():
-    part = made(Warmed)
+    part = part_of(Warmed)
     cold = (part.gain(still()) - 1.0) / part.share
     assert cold == pytest.approx(np.full(4, part.COLD)) and part.share < 0.0
     losses = []
@@ -259,7 +251,7 @@ def test_motors_lose_more_as_they_warm_each_as_it_is_cooled():
 
 
 def test_a_motor_heats_with_the_fourth_power_of_its_speed_and_cools_again():
-    part = made(Warmed)
+    part = part_of(Warmed)
     turning(part, 1.1, 60.0)
     assert part._heat == pytest.approx(1.1 ** 4 * part.heats, rel=1e-3)
     turning(part, 2.0, 60.0)
@@ -269,7 +261,7 @@ def test_a_motor_heats_with_the_fourth_power_of_its_speed_and_cools_again():
 
 
 def test_a_tether_pulls_to_its_winch_by_the_same_everywhere():
-    part, weight = made(Tethered), made(Tethered).parameters['mass'] * GRAVITY
+    part, weight = part_of(Tethered), part_of(Tethered).parameters['mass'] * GRAVITY
     leans = Rotation.from_euler('xyz', [0.3, -0.2, 1.0]).as_matrix()
     for place in (np.array([*part.winch[:2], 1.0]), np.array([1.0, -2.0, 1.5]),
                   np.array([-0.5, 0.5, 0.3])):
@@ -284,7 +276,7 @@ def test_a_tether_pulls_to_its_winch_by_the_same_everywhere():
 
 
 def test_a_tether_rubs_both_ways_by_the_law_of_the_capstan():
-    part, weight = made(Tethered), made(Tethered).parameters['mass'] * GRAVITY
+    part, weight = part_of(Tethered), part_of(Tethered).parameters['mass'] * GRAVITY
     pulls = []
     for place in (np.array([*part.winch[:2], 1.0]), np.array([3.0, 0.0, 1.0])):
         along = (place - part.winch) / np.linalg.norm(place - part.winch)
@@ -301,7 +293,7 @@ def test_a_tether_rubs_both_ways_by_the_law_of_the_capstan():
 
 
 def test_rime_comes_faster_with_the_flight_as_more_droplets_hit():
-    part = made(Rimed)
+    part = part_of(Rimed)
     assert part.hits(1.0) == pytest.approx(1.0) and part.hits(0.0) == 0.0
     # With the square of what is slow, and with what is fast.
     assert part.hits(2e-3) / part.hits(1e-3) == pytest.approx(4.0, rel=1e-2)
@@ -321,7 +313,7 @@ def test_rime_comes_faster_with_the_flight_as_more_droplets_hit():
 def test_rime_breaks_off_place_by_place_and_is_about_its_mean():
     means = []
     for seed in range(40):
-        part = made(Rimed, seed=seed)
+        part = part_of(Rimed, seed=seed)
         ice = []
         for _ in range(2000):
             part.wrench(still(air=np.array([1.0, 0.0, 0.0])))
@@ -337,7 +329,7 @@ def test_rime_breaks_off_place_by_place_and_is_about_its_mean():
 
 
 def test_rime_has_weight_and_inertia():
-    part, true = made(Rimed), fresh()
+    part, true = part_of(Rimed), fresh()
     part.alter(true, PARAMS)
     mean = part.parameters['mass']
     assert true['mass'] == pytest.approx(PARAMS['mass'] + mean)

@@ -2,35 +2,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """Forms of bodies, rotors and sensors that the twenty-third draw is the first to fly."""
 
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from test_withheld_forms import fresh, HOVER, instant, PARAMS, PLACES
-from test_withheld_forms_of_draw_15 import turning
+from withheld_parts import fresh, HOVER, LIFT, PARAMS, part_of, PLACES, REST, still, turning
 
 from withheld import outside
 from withheld.forms import gimbals, leans, scales, suspensions, threads, underslung
 
-REST = np.zeros(3)
-LIFT = PARAMS['k_eta'] * 4.0 * HOVER ** 2
-
-
-def made(kind, size=2.0, seed=3):
-    part = kind(size, PARAMS, np.random.default_rng(seed))
-    part.begin(np.random.default_rng(4))
-    part.alter(fresh(), PARAMS)
-    return part
-
-
-def still(**others):
-    return replace(instant(velocity=REST, rate=REST, turn=np.ones(4)), **others)
-
 
 def test_a_parcel_on_lines_swings_about_the_vertical_alone_and_faster_under_more_thrust():
     for turn in (0.8, 1.2):
-        part, step, moments = made(suspensions.Multifilar), 0.0025, []
+        part, step, moments = part_of(suspensions.Multifilar), 0.0025, []
         part._turning = np.array([0.02, -0.02, 0.02])
         now = still(speeds=np.full(4, turn * HOVER))
         for _ in range(1200):
@@ -45,7 +29,7 @@ def test_a_parcel_on_lines_swings_about_the_vertical_alone_and_faster_under_more
 
 
 def test_a_parcel_on_lines_ends_up_with_all_of_its_momentum():
-    part, step, given = made(suspensions.Multifilar), 0.001, np.zeros(3)
+    part, step, given = part_of(suspensions.Multifilar), 0.001, np.zeros(3)
     now = still(rate=np.array([0.3, -0.2, 0.4]))
     for _ in range(8000):
         given -= step * part.wrench(now)[1]
@@ -56,7 +40,7 @@ def test_a_parcel_on_lines_ends_up_with_all_of_its_momentum():
 
 
 def test_lines_as_long_as_they_are_apart_turn_a_parcel_back_by_the_sine_of_half_the_angle():
-    part = made(suspensions.Multifilar)
+    part = part_of(suspensions.Multifilar)
     # What lifts it: the height of lines of length 1 between circles of radius 1/2.
     angles, h = np.linspace(0.1, 2.0, 8), 1e-5
 
@@ -73,7 +57,7 @@ def test_lines_as_long_as_they_are_apart_turn_a_parcel_back_by_the_sine_of_half_
 
 
 def test_a_camera_that_is_held_level_goes_aside_in_a_body_that_leans():
-    part = made(gimbals.Gimballed)
+    part = part_of(gimbals.Gimballed)
     assert part.wrench(still())[1] == pytest.approx(REST)
     far = part.SWINGS * np.linalg.norm(part.centre[:2])
     for lean in ([0.0, 1.0, 0.0], [0.6, -0.8, 0.0]):
@@ -87,14 +71,15 @@ def test_a_camera_that_is_held_level_goes_aside_in_a_body_that_leans():
         steep = Rotation.from_rotvec(1.2 * axis).as_matrix()
         assert part.wrench(still(rotation=steep))[1] == pytest.approx(
             part.below * LIFT * far * part.MOST / part.LEAN * axis)
-    assert {made(gimbals.Gimballed, seed=seed).below for seed in range(20)} == {-1.0, 1.0}
+    sides = {part_of(gimbals.Gimballed, seed=seed, flight=4).below for seed in range(20)}
+    assert sides == {-1.0, 1.0}
     true = fresh()
     part.alter(true, PARAMS)
     assert true['centre'] == pytest.approx(part.centre)
 
 
 def test_a_thread_winds_up_by_an_equal_share_and_then_ends():
-    part, rubs = made(threads.Wound), []
+    part, rubs = part_of(threads.Wound), []
     half = -part._wound
     assert part.HALF[0] <= half <= part.HALF[1]
     for _ in range(3000):
@@ -109,7 +94,7 @@ def test_a_thread_winds_up_by_an_equal_share_and_then_ends():
 
 
 def test_a_thread_rubs_by_the_same_force_at_every_speed_and_winds_with_it():
-    part, losses = made(threads.Wound), []
+    part, losses = part_of(threads.Wound), []
     for turn in (0.7, 1.0, 1.4):
         gain = part.gain(still(speeds=np.full(4, turn * HOVER)))
         assert np.count_nonzero(gain != 1.0) == 1 and np.all(gain > 0.0)
@@ -122,7 +107,7 @@ def test_a_thread_rubs_by_the_same_force_at_every_speed_and_winds_with_it():
 
 @pytest.mark.slow
 def test_a_controller_is_hot_in_hover_and_cool_in_flight():
-    part, lacks = made(threads.Uncooled), []
+    part, lacks = part_of(threads.Uncooled), []
     for speed in (0.0, 1.0, 4.0):
         now = turning(part, 1.0, 60.0, air=np.array([0.6 * speed, 0.0, 0.8 * speed]))
         gain = part.gain(now)
@@ -135,7 +120,7 @@ def test_a_controller_is_hot_in_hover_and_cool_in_flight():
 
 
 def test_a_controller_cools_sooner_in_flight():
-    part, lefts = made(threads.Uncooled), []
+    part, lefts = part_of(threads.Uncooled), []
     for speed in (0.0, 4.0):
         cools = part.REST + part.BLOWN * np.sqrt(speed)
         part._heat = 1.0 / cools + 1.0
@@ -146,7 +131,7 @@ def test_a_controller_cools_sooner_in_flight():
 
 
 def test_blades_on_hinges_swing_the_faster_the_faster_they_turn():
-    part, true = made(leans.Swinging), fresh()
+    part, true = part_of(leans.Swinging), fresh()
     part.alter(true, PARAMS)
     assert true['rotor_inertia'] == pytest.approx(part.OWN * part.inertia)
     loose = (1.0 - part.OWN) * part.inertia
@@ -167,7 +152,7 @@ def test_blades_on_hinges_swing_the_faster_the_faster_they_turn():
 
 
 def test_swinging_blades_resist_a_turn_by_the_momentum_that_they_have():
-    part = made(leans.Swinging)
+    part = part_of(leans.Swinging)
     speeds = np.array([1.1, 0.9, 1.1, 0.9]) * HOVER
     now = still(speeds=speeds, rate=np.array([0.5, -0.4, 0.0]))
     moment = part.wrench(now)[1]
@@ -176,7 +161,7 @@ def test_swinging_blades_resist_a_turn_by_the_momentum_that_they_have():
 
 
 def test_rotors_that_lean_turn_the_body_about_all_axes_as_they_change_their_speed():
-    part = made(leans.Leaning)
+    part = part_of(leans.Leaning)
     assert np.linalg.norm(part.axes, axis=1) == pytest.approx(np.ones(4))
     assert part.axes.sum(axis=0) == pytest.approx([0.0, 0.0, 4.0 * np.cos(part.LEANS)])
     across = np.cross(PLACES, part.axes)[:, 2]
@@ -194,7 +179,7 @@ def test_rotors_that_lean_turn_the_body_about_all_axes_as_they_change_their_spee
 
 
 def test_rotors_that_lean_do_no_work_on_a_body_that_turns():
-    part, rate = made(leans.Leaning), np.array([0.5, -0.3, 0.8])
+    part, rate = part_of(leans.Leaning), np.array([0.5, -0.3, 0.8])
     speeds = np.array([1.1, 1.0, 0.8, 0.95]) * HOVER
     moment = part.wrench(still(speeds=speeds, rate=rate))[1]
     assert moment @ rate == pytest.approx(0.0, abs=1e-12) and np.all(moment != 0.0)
@@ -205,7 +190,7 @@ def test_rotors_that_lean_do_no_work_on_a_body_that_turns():
 
 
 def test_a_parcel_in_the_wake_turns_the_body_with_the_velocity_and_then_with_its_square():
-    part, moments = made(underslung.Underslung), []
+    part, moments = part_of(underslung.Underslung), []
     for speed in (1e-3, part.wake, 100.0 * part.wake):
         force, moment = part.wrench(still(air=np.array([speed, 0.0, 0.0])))
         assert force[0] < 0.0 and force[1:] == pytest.approx([0.0, 0.0])
@@ -219,7 +204,7 @@ def test_a_parcel_in_the_wake_turns_the_body_with_the_velocity_and_then_with_its
 
 
 def test_what_a_parcel_turns_the_body_by_is_its_drag_below_the_centre():
-    part = made(underslung.Underslung)
+    part = part_of(underslung.Underslung)
     air = np.array([1.0, -0.7, 0.4])
     force, moment = part.wrench(still(air=air))
     assert force @ air < 0.0 and force[2] == 0.0
@@ -246,7 +231,7 @@ def said_by(part, rates, step=0.01):
 @pytest.mark.slow
 @pytest.mark.parametrize('axis', range(3))
 def test_an_attitude_with_wrong_scales_is_off_by_a_share_of_a_turn_and_comes_back(axis):
-    part = made(scales.Scaled)
+    part = part_of(scales.Scaled)
     part.angles = np.zeros(3)
     rates = np.zeros((2000, 3))
     rates[1:101, axis] = 0.8
@@ -260,15 +245,15 @@ def test_an_attitude_with_wrong_scales_is_off_by_a_share_of_a_turn_and_comes_bac
 
 
 def test_wrong_scales_have_a_bound_and_leave_what_sits_askew():
-    part, rest = made(scales.Scaled), np.zeros((3, 3))
+    part, rest = part_of(scales.Scaled), np.zeros((3, 3))
     askew = Rotation.from_euler('ZYX', part.angles[::-1]).as_rotvec()
     assert said_by(part, rest)[-1] == pytest.approx(askew)
-    assert np.max(np.abs(made(scales.Scaled, 50.0).scales)) <= scales.Scaled.MOST
+    assert np.max(np.abs(part_of(scales.Scaled, 50.0).scales)) <= scales.Scaled.MOST
 
 
 @pytest.mark.slow
 def test_a_bias_flickers_alike_over_short_and_long_times():
-    part, walks = made(scales.Flickering), []
+    part, walks = part_of(scales.Flickering), []
     for seed in range(80):
         part.begin(np.random.default_rng(seed))
         walks.append(part._walk)
@@ -291,7 +276,7 @@ def test_a_bias_flickers_alike_over_short_and_long_times():
 
 
 def test_a_gyroscope_says_the_bias_that_flickers_and_nothing_else_changes():
-    part, state = made(scales.Flickering), np.arange(13.0)
+    part, state = part_of(scales.Flickering), np.arange(13.0)
     out = part.measured(3.0, state, 1.0)
     assert out[:10] == pytest.approx(state[:10])
     assert out[10:] - state[10:] == pytest.approx((1.0 + part._walk[60]) * part.bias)

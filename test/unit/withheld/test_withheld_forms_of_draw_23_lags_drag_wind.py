@@ -2,12 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Forms of lags, delays, drag and wind that the twenty-third draw flies: what each does."""
 
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.optimize import brentq
-from test_withheld_forms import HOVER, instant, PARAMS
+from withheld_parts import HOVER, PARAMS, part_of, REST, stepped, still
 
 from withheld.forms.alleys import Alley
 from withheld.forms.lulls import Lulled
@@ -17,18 +16,6 @@ from withheld.forms.segments import Coalesced, Throttled
 from withheld.forms.skids import Skidded
 from withheld.forms.wings import Winged
 
-REST = np.zeros(3)
-
-
-def part_of(kind, size):
-    part = kind(size, PARAMS, np.random.default_rng(3))
-    part.begin(np.random.default_rng(4))
-    return part
-
-
-def still(**others):
-    return replace(instant(velocity=REST, rate=REST, turn=np.ones(4)), **others)
-
 
 def flown(part, *air):
     """Return the force of a part that flies level at a velocity, over its coefficient."""
@@ -37,22 +24,12 @@ def flown(part, *air):
     return force / part.coefficient
 
 
-def stepped(motor, begin, end, step=0.0005, seconds=1.0):
-    """Return the speeds over that in hover after each step, from one that was held to another."""
-    speeds = motor.turn(np.full(4, begin * HOVER), np.full(4, begin * HOVER), step)
-    turns = []
-    for _ in range(round(seconds / step)):
-        speeds = motor.turn(speeds, np.full(4, end * HOVER), step)
-        turns.append(speeds[0] / HOVER)
-    return np.array(turns)
-
-
 @pytest.mark.parametrize('kind', [Averaged, Ramped])
 def test_a_command_that_is_held_is_reached_and_kept(kind):
     motor = kind(2.0, PARAMS, None)
-    assert stepped(motor, 1.0, 1.0) == pytest.approx(np.ones(2000))
+    assert stepped(motor, 1.0)[:, 0] == pytest.approx(np.ones(2000))
     for end in (1.2, 0.8):
-        assert stepped(kind(2.0, PARAMS, None), 1.0, end)[-1] == pytest.approx(end, abs=1e-6)
+        assert stepped(kind(2.0, PARAMS, None), end)[-1, 0] == pytest.approx(end, abs=1e-6)
 
 
 @pytest.mark.parametrize('before', [0, 3, 7])
@@ -61,7 +38,7 @@ def test_a_mean_of_the_window_before_is_late_by_the_mean_time_wherever_the_step_
     motor.window = 20 * step
     for _ in range(before):
         motor.turn(np.full(4, HOVER), np.full(4, HOVER), step)
-    turns = stepped(motor, 1.0, 1.1, step)
+    turns = stepped(motor, 1.1, step)[:, 0]
     own = motor.OWN * motor.parameters['time']
     # Of the first step the mean is of what came before as well; each sample is seen at its end.
     assert step * np.sum(1.1 - turns) / 0.1 == pytest.approx(motor.window + own, abs=1.1 * step)
@@ -83,12 +60,12 @@ def test_a_peak_counts_in_the_mean_of_its_window_alone_by_how_long_it_lasts():
 def test_a_bounded_rise_grows_with_the_speed_and_a_fall_is_free():
     motor = Ramped(2.0, PARAMS, None)
     time, step = motor.parameters['time'], 0.0005
-    turns = stepped(motor, 0.6, 1.6, step)
+    turns = stepped(motor, 1.6, step, before=0.6)[:, 0]
     # Behind a lag, what grows by an equal share in each step is later by a constant factor.
     rises = np.log(turns[1:] / turns[:-1]) / step
     on = (turns[1:] > 0.75) & (turns[1:] < 1.3)
     assert rises[on] == pytest.approx(np.full(on.sum(), motor.rises), rel=0.05)
-    fall = stepped(Ramped(2.0, PARAMS, None), 1.6, 0.6, step)
+    fall = stepped(Ramped(2.0, PARAMS, None), 0.6, step, before=1.6)[:, 0]
     since = step * np.arange(1, len(fall) + 1)
     assert fall == pytest.approx(0.6 + np.exp(-since / time), abs=1e-6)
 
@@ -96,7 +73,7 @@ def test_a_bounded_rise_grows_with_the_speed_and_a_fall_is_free():
 def test_a_small_rise_is_a_lag_and_a_large_one_takes_longer():
     motor, step, times = Ramped(2.0, PARAMS, None), 0.0005, []
     for end in (1.001, 1.1, 1.3):
-        turns = stepped(Ramped(2.0, PARAMS, None), 1.0, end, step)
+        turns = stepped(Ramped(2.0, PARAMS, None), end, step)[:, 0]
         times.append(step * np.sum(end - turns) / (end - 1.0))
         assert np.all(turns <= end)
     assert times[0] == pytest.approx(motor.parameters['time'], rel=0.03)
@@ -107,7 +84,7 @@ def test_a_small_rise_is_a_lag_and_a_large_one_takes_longer():
 
 
 def test_a_bounded_rise_starts_from_rest_and_is_the_same_in_one_step_or_in_many():
-    turns = stepped(Ramped(1.0, PARAMS, None), 0.0, 1.0, seconds=2.0)
+    turns = stepped(Ramped(1.0, PARAMS, None), 1.0, seconds=2.0, before=0.0)[:, 0]
     assert turns[-1] == pytest.approx(1.0, abs=1e-4)
     goals = []
     for parts in (1, 20):

@@ -2,13 +2,23 @@
 # SPDX-License-Identifier: Apache-2.0
 """Forms of inertia, rotors and sensors that the twenty-fourth draw flies, and a stranger."""
 
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from test_withheld_forms import fresh, HOVER, instant, PARAMS, PLACES
-from test_withheld_forms_of_draw_15 import turning
+from withheld_parts import (
+    fresh,
+    HANGING,
+    HOVER,
+    instant,
+    LEVEL,
+    PARAMS,
+    part_of,
+    PLACES,
+    REST,
+    still,
+    turning,
+)
 
 from withheld import outside
 from withheld.constants import hover_speed, induced_velocity
@@ -20,21 +30,6 @@ from withheld.forms.lenses import Zooming
 from withheld.forms.polynomials import Fitted
 from withheld.forms.reflections import Reflected
 from withheld.forms.skews import Easing
-
-REST = np.zeros(3)
-LEVEL = np.eye(3)
-HANGING = np.array([*np.zeros(9), 1.0, *np.zeros(3)])
-
-
-def part_of(kind, size=2.0):
-    part = kind(size, PARAMS, np.random.default_rng(3))
-    part.alter(fresh(), PARAMS)
-    part.begin(np.random.default_rng(4))
-    return part
-
-
-def still(**others):
-    return replace(instant(velocity=REST, rate=REST, turn=np.ones(4)), **others)
 
 
 def test_a_cage_catches_up_with_a_turn_in_a_time_and_not_before():

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from test_withheld_forms import HOVER, instant, PARAMS, PLACES
+from withheld_parts import above, drained, HOVER, PARAMS, part_of, PLACES, REST, still
 
 from withheld.constants import arm_length, GRAVITY
 from withheld.forms.bilges import Draining
@@ -20,27 +20,12 @@ from withheld.forms.spans import TipLosing
 from withheld.forms.suckdowns import SuckedDown
 from withheld.forms.throttles import Lifted
 
-REST = np.zeros(3)
 FRONT, LEFT = PLACES[:, 0] > 0.0, PLACES[:, 1] > 0.0
-
-
-def still(**others):
-    return replace(instant(velocity=REST, rate=REST, turn=np.ones(4)), **others)
-
-
-def above(radii, **others):
-    return still(heights=np.full(4, radii * PARAMS['rotor_radius']), **others)
-
-
-def made(kind, size=2.0, params=PARAMS):
-    part = kind(size, params, np.random.default_rng(3))
-    part.begin(np.random.default_rng(4))
-    return part
 
 
 @pytest.mark.parametrize('kind', [Echeloned, TipLosing])
 def test_flow_is_measured_by_what_a_rotor_moves_itself_and_rest_is_nothing(kind):
-    rotor, air = made(kind), np.array([0.0, 0.0, 0.9])
+    rotor, air = part_of(kind), np.array([0.0, 0.0, 0.9])
     slow = rotor.gain(still(air=air))
     fast = rotor.gain(still(air=1.2 * air, speeds=np.full(4, 1.2 * HOVER)))
     assert fast == pytest.approx(slow) and np.all(slow < 1.0)
@@ -48,7 +33,7 @@ def test_flow_is_measured_by_what_a_rotor_moves_itself_and_rest_is_nothing(kind)
 
 
 def test_vortices_of_one_wing_do_what_biot_and_savart_say():
-    part, forward = made(Echeloned), np.array([3.0, 0.0])
+    part, forward = part_of(Echeloned), np.array([3.0, 0.0])
     part.CORE, part.SINKS = 1e-3, 0.0
     strength = 3.0 / (9.0 + part.STARTS ** 2) / (4.0 * part.HALF)
 
@@ -71,7 +56,7 @@ def test_vortices_of_one_wing_do_what_biot_and_savart_say():
 
 
 def test_rotors_behind_lose_and_those_at_the_sides_of_a_corner_gain():
-    part, speed = made(Echeloned), 2.0
+    part, speed = part_of(Echeloned), 2.0
     ahead = part.gain(still(air=np.array([speed * part.induced, 0.0, 0.0])))
     back = part.gain(still(air=np.array([-speed * part.induced, 0.0, 0.0])))
     aside = part.gain(still(air=np.array([0.0, speed * part.induced, 0.0])))
@@ -87,7 +72,7 @@ def test_rotors_behind_lose_and_those_at_the_sides_of_a_corner_gain():
 
 
 def test_vortices_come_with_flight_and_leave_with_fast_flight():
-    part, differs = made(Echeloned), []
+    part, differs = part_of(Echeloned), []
     for speed in (0.01, 1.5, 30.0):
         gain = part.gain(still(air=np.array([speed * part.induced, 0.0, 0.0])))
         differs.append(gain[FRONT][0] - gain[~FRONT][0])
@@ -98,7 +83,7 @@ def test_vortices_come_with_flight_and_leave_with_fast_flight():
 
 
 def test_blades_and_momentum_agree_on_thrust_and_inflow():
-    part = made(TipLosing)
+    part = part_of(TipLosing)
     climb, across = (one.ravel() for one in np.meshgrid(
         np.linspace(part.LEAST, 3.0, 14), np.linspace(0.0, 4.0, 9)))
     thrust, flow = part.thrust(climb, across)
@@ -110,7 +95,7 @@ def test_blades_and_momentum_agree_on_thrust_and_inflow():
 
 
 def test_the_span_that_lifts_is_what_the_loss_at_the_tips_leaves():
-    part = made(TipLosing)
+    part = part_of(TipLosing)
     for inflow in (0.03, 0.1):
         # Prandtl's factor, by how far from the tip, over the radius, of two blades.
         sine = inflow / np.sqrt(1.0 + inflow ** 2)
@@ -122,7 +107,7 @@ def test_the_span_that_lifts_is_what_the_loss_at_the_tips_leaves():
 
 
 def test_without_a_loss_at_the_tips_a_climb_costs_less():
-    part, air = made(TipLosing), np.array([0.0, 0.0, 2.0])
+    part, air = part_of(TipLosing), np.array([0.0, 0.0, 2.0])
     with_loss = part.gain(still(air=air))
     part.TIPS = 0.0
     assert np.all(with_loss < part.gain(still(air=air)))
@@ -134,7 +119,7 @@ def test_without_a_loss_at_the_tips_a_climb_costs_less():
 
 
 def test_a_plate_is_sucked_down_by_the_power_that_was_measured():
-    part = made(SuckedDown)
+    part = part_of(SuckedDown)
     plate = 2.0 * (arm_length(PARAMS) + part.BEYOND * part.radius)
     assert part.wider * part.radius == pytest.approx(plate - 4.0 * part.radius)
     sucked = []
@@ -147,7 +132,7 @@ def test_a_plate_is_sucked_down_by_the_power_that_was_measured():
 
 
 def test_near_ground_a_plate_takes_more_than_ground_gives_and_flight_leaves_both():
-    part = made(SuckedDown)
+    part = part_of(SuckedDown)
     gains = [part.gain(above(h))[0] for h in (1.0, 1.5, 2.0, 3.0, 6.0, 100.0)]
     assert np.all(np.diff(gains) > 0.0) and gains[0] < 0.95 and 1.0 - gains[-1] < 1e-4
     assert part.gain(above(0.5))[0] > 1.0
@@ -160,7 +145,7 @@ def test_near_ground_a_plate_takes_more_than_ground_gives_and_flight_leaves_both
 
 
 def test_a_fountain_lifts_in_the_middle_where_it_is_level_and_at_rest():
-    part, weight = made(Adrift), PARAMS['mass'] * GRAVITY
+    part, weight = part_of(Adrift), PARAMS['mass'] * GRAVITY
     for height in (1.0, 2.0):
         force, moment = part.wrench(above(height))
         lift = part.size * part.LIFTS * weight * np.exp(-part.FALLS * height)
@@ -173,7 +158,7 @@ def test_a_fountain_lifts_in_the_middle_where_it_is_level_and_at_rest():
 
 
 def test_flight_leaves_the_fountain_behind_which_turns_the_nose_down_until_it_misses():
-    part, moments = made(Adrift), []
+    part, moments = part_of(Adrift), []
     for speed in (0.1, 1.0, 10.0):
         now = above(1.0, air=np.array([speed, 0.0, 0.0]))
         assert part.place(now) == pytest.approx([-speed / part.induced * part.radius, 0.0, 0.0])
@@ -187,7 +172,7 @@ def test_flight_leaves_the_fountain_behind_which_turns_the_nose_down_until_it_mi
 
 
 def test_a_fountain_rises_upright_from_where_the_body_s_axis_points():
-    part, heading = made(Adrift), Rotation.from_euler('z', 0.7).as_matrix()
+    part, heading = part_of(Adrift), Rotation.from_euler('z', 0.7).as_matrix()
     lean = Rotation.from_euler('y', 0.2).as_matrix()
     now = above(1.5, rotation=lean)
     # The axis goes up ahead, so that the wakes meet the ground behind.
@@ -199,16 +184,8 @@ def test_a_fountain_rises_upright_from_where_the_body_s_axis_points():
     assert np.isfinite(part.wrench(above(1.5, rotation=np.diag([1.0, -1.0, -1.0])))).all()
 
 
-def drained(battery, turns, step=0.01):
-    ratios = []
-    for k, turn in enumerate(turns):
-        battery.drain(step * k, step, np.broadcast_to(turn, (4,)))
-        ratios.append(battery.ratio)
-    return np.array(ratios)
-
-
 def test_rotors_that_spin_up_take_voltage_and_those_that_slow_down_give_some_back():
-    battery = made(Regenerating)
+    battery = part_of(Regenerating)
     ratios = drained(battery, np.repeat([1.0, 1.2, 1.0], 100))
     steady = 1.0 - battery.size * battery.RESISTS * 1.2 ** 3
     assert ratios[0] == pytest.approx(1.0 - battery.size * battery.RESISTS, abs=1e-4)
@@ -221,14 +198,14 @@ def test_what_rotors_have_is_what_they_took_and_some_of_it_is_lost():
     charges = []
     for turns in (np.ones(200), np.repeat([1.0, 1.3], 100),
                   np.repeat([1.0, 1.3, 1.0], [50, 75, 75])):
-        battery = made(Regenerating)
+        battery = part_of(Regenerating)
         battery.FOLLOWS = 1e-9
         drained(battery, turns)
         charges.append(battery._taken - 0.01 * np.sum(turns ** 3))
     stored = battery.STORES * (1.3 ** 2 - 1.0)
     assert charges == pytest.approx([0.0, stored, (1.0 - battery.RETURNS) * stored])
     # As one gives what another one takes, little is left of it.
-    battery, one = made(Regenerating), np.array([1.1, 0.9, 1.0, 1.0])
+    battery, one = part_of(Regenerating), np.array([1.1, 0.9, 1.0, 1.0])
     battery.FOLLOWS = 1e-9
     drained(battery, [np.ones(4), one])
     spins = battery.STORES * np.array([1.1 ** 2 - 1.0, battery.RETURNS * (0.9 ** 2 - 1.0)])
@@ -236,7 +213,7 @@ def test_what_rotors_have_is_what_they_took_and_some_of_it_is_lost():
 
 
 def test_a_power_is_what_voltage_and_current_make_and_half_of_the_voltage_gives_the_most():
-    battery = made(Faltering)
+    battery = part_of(Faltering)
     loads = np.linspace(0.1, 2.0, 20)
     volts = np.array([battery.voltage(one) for one in loads])
     assert volts * (1.0 - volts) / battery.RESISTS == pytest.approx(loads)
@@ -248,18 +225,18 @@ def test_a_power_is_what_voltage_and_current_make_and_half_of_the_voltage_gives_
 
 
 def test_charge_goes_with_a_current_that_grows_as_the_voltage_falls():
-    battery = made(Faltering)
+    battery = part_of(Faltering)
     first = 1.0 - battery.size * battery.SHARE * (1.0 - battery.voltage(1.0))
     ratios = drained(battery, np.ones(3000))
     falls = -np.diff(ratios)
     assert np.all(falls > 0.0) and falls[-1] > 1.3 * falls[0]
     assert ratios[0] == pytest.approx(first)
-    weak = made(Faltering)
+    weak = part_of(Faltering)
     assert np.all(drained(weak, np.full(6000, 1.5)) > 0.849) and weak._open >= 0.5
 
 
 def test_a_wrong_start_of_the_throttle_is_right_at_full_and_a_constant_part_below():
-    part, full = made(Lifted), PARAMS['rotor_speed_max']
+    part, full = part_of(Lifted), PARAMS['rotor_speed_max']
     assert part.gain(still()) == pytest.approx(1.0 + part.share)
     assert part.gain(still(speeds=np.full(4, full))) == pytest.approx(1.0)
     turns = np.array([0.5, 0.8, 1.0, 1.3])
@@ -292,7 +269,7 @@ def flown(part, pulls, step=0.01, rotation=None):
 
 
 def test_water_runs_out_by_the_root_until_it_is_out():
-    part, t = made(Draining), np.linspace(0.0, 20.0, 2001)
+    part, t = part_of(Draining), np.linspace(0.0, 20.0, 2001)
     masses, mean = np.array([part.mass(time) for time in t]), part.parameters['mass']
     over = np.sqrt(masses - mean * part.STAYS)
     assert np.diff(over[t <= part.LASTS], 2) == pytest.approx(0.0, abs=1e-9)
@@ -302,7 +279,7 @@ def test_water_runs_out_by_the_root_until_it_is_out():
 
 
 def test_a_hook_is_rigid_up_to_its_preload_and_yields_beyond():
-    part = made(Preloaded)
+    part = part_of(Preloaded)
     _, pushes = flown(part, GRAVITY + np.linspace(-8.0, part.YIELDS - 1e-9, 300))
     assert not np.any(pushes) and part._out == 0.0
     # Beyond, it comes to rest where the spring has the rest of the pull.
@@ -312,7 +289,7 @@ def test_a_hook_is_rigid_up_to_its_preload_and_yields_beyond():
 
 
 def test_what_a_hook_takes_it_gives_back_and_the_stop_takes_the_rest():
-    part = made(Preloaded)
+    part = part_of(Preloaded)
     pulls = GRAVITY + np.where(np.arange(200) < 20, 3.0, -1.0)
     _, pushes = flown(part, pulls)
     # In sum there is no momentum, as it is at the stop at both ends; there, it does not rebound.
@@ -325,7 +302,7 @@ def test_what_a_hook_takes_it_gives_back_and_the_stop_takes_the_rest():
 
 
 def test_a_hook_swings_with_its_own_frequency_while_it_is_off_its_stop():
-    part, outs = made(Preloaded), []
+    part, outs = part_of(Preloaded), []
     for _ in range(300):
         flown(part, [GRAVITY + 3.0])
         outs.append(part._out)

@@ -2,12 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Forms of lags, delays, drag and wind that the twenty-fourth draw flies: what each does."""
 
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from test_withheld_forms import HOVER, instant, PARAMS, PLACES
+from withheld_parts import HOVER, PARAMS, part_of, PLACES, REST, stepped, still
 
 from withheld.constants import arm_length
 from withheld.forms.bends import Bending
@@ -20,44 +19,21 @@ from withheld.forms.modems import HalfDuplex
 from withheld.forms.observers import PhaseLocked
 from withheld.forms.silhouettes import Projected
 
-REST = np.zeros(3)
-
-
-def part_of(kind, size=2.0, seed=3):
-    part = kind(size, PARAMS, np.random.default_rng(seed))
-    part.begin(np.random.default_rng(seed + 1))
-    return part
-
-
-def still(**others):
-    return replace(instant(velocity=REST, rate=REST, turn=np.ones(4)), **others)
-
-
-def stepped(motor, before, command, step=0.0005, seconds=1.0):
-    """Return the turns (N, 4) after each step, from one command that was held to another."""
-    before = np.broadcast_to(HOVER * np.asarray(before, float), (4,))
-    command = np.broadcast_to(HOVER * np.asarray(command, float), (4,))
-    speeds, turns = motor.turn(before, before, step), []
-    for _ in range(round(seconds / step)):
-        speeds = motor.turn(speeds, command, step)
-        turns.append(speeds / HOVER)
-    return np.array(turns)
-
 
 @pytest.mark.parametrize('kind', [PhaseLocked, Boosted])
 def test_a_command_that_is_held_is_reached_and_is_the_same_in_one_step_or_in_many(kind):
     command = np.array([1.1, 0.9, 1.0, 1.2])
-    assert stepped(kind(2.0, PARAMS, None), 1.0, command)[-1] == pytest.approx(command, abs=1e-6)
-    assert stepped(kind(2.0, PARAMS, None), 1.0, 1.0) == pytest.approx(np.ones((2000, 4)))
-    one = stepped(kind(2.0, PARAMS, None), 1.0, command, 0.004, 0.04)[-1]
-    many = stepped(kind(2.0, PARAMS, None), 1.0, command, 0.0001, 0.04)[-1]
+    assert stepped(kind(2.0, PARAMS, None), command)[-1] == pytest.approx(command, abs=1e-6)
+    assert stepped(kind(2.0, PARAMS, None), 1.0) == pytest.approx(np.ones((2000, 4)))
+    one = stepped(kind(2.0, PARAMS, None), command, 0.004, 0.04)[-1]
+    many = stepped(kind(2.0, PARAMS, None), command, 0.0001, 0.04)[-1]
     assert one == pytest.approx(many, abs=1e-6 if kind is PhaseLocked else 5e-3)
 
 
 def test_a_motor_that_is_seen_late_starts_with_the_whole_slope_and_swings_past():
     motor, step = PhaseLocked(2.0, PARAMS, None), 0.0005
     time = motor.parameters['time']
-    turns = stepped(motor, 1.0, 1.1, step)[:, 0]
+    turns = stepped(motor, 1.1, step)[:, 0]
     missing = (1.1 - turns) / 0.1
     # It is as late in the mean as its time says, by the trapezium from the step on.
     assert step * (0.5 + np.sum(missing)) == pytest.approx(time, rel=1e-3)
@@ -72,7 +48,7 @@ def test_a_motor_that_is_seen_late_starts_with_the_whole_slope_and_swings_past()
 def test_a_loop_that_is_far_faster_than_the_controller_leaves_a_lag_of_the_first_order():
     motor = PhaseLocked(2.0, PARAMS, None)
     motor.RATE = 400.0
-    turns = stepped(motor, 1.0, 1.1)[:, 0]
+    turns = stepped(motor, 1.1)[:, 0]
     since = 0.0005 * np.arange(1, len(turns) + 1)
     lag = motor.parameters['time']
     assert turns == pytest.approx(1.1 - 0.1 * np.exp(-since / lag), abs=5e-4)
@@ -83,10 +59,10 @@ def test_what_turns_the_body_has_the_whole_lag_and_the_throttle_leads():
     motor = Boosted(2.0, PARAMS, None)
     time, slow = motor.parameters['time'], motor.SLOW * motor.parameters['time']
     since = step * np.arange(1, 2001)[:, None]
-    turns = stepped(motor, 1.0, 1.0 + differ, step)
+    turns = stepped(motor, 1.0 + differ, step)
     assert turns == pytest.approx(1.0 + differ * (1.0 - np.exp(-since / time)), abs=1e-9)
     # Together, by the solution of the filter and the lag; it is less late and swings past.
-    both = stepped(Boosted(2.0, PARAMS, None), 1.0, 1.1 + differ, step)
+    both = stepped(Boosted(2.0, PARAMS, None), 1.1 + differ, step)
     mean = both.mean(axis=1)
     boost = motor.BOOST * slow / (slow - time) * (np.exp(-since / slow) - np.exp(-since / time))
     assert mean == pytest.approx((1.1 + 0.1 * (boost - np.exp(-since / time)))[:, 0], abs=3e-4)
@@ -99,11 +75,11 @@ def test_what_turns_the_body_has_the_whole_lag_and_the_throttle_leads():
 def test_a_boost_ends_at_the_whole_throttle():
     motor = Boosted(2.0, PARAMS, None)
     full = PARAMS['rotor_speed_max'] / HOVER
-    turns = stepped(motor, 1.0, full)[:, 0]
+    turns = stepped(motor, full)[:, 0]
     since = 0.0005 * np.arange(1, len(turns) + 1)
     assert turns == pytest.approx(
         full - (full - 1.0) * np.exp(-since / motor.parameters['time']))
-    assert stepped(Boosted(2.0, PARAMS, None), 1.0, 0.05).min() >= 0.0
+    assert stepped(Boosted(2.0, PARAMS, None), 0.05).min() >= 0.0
 
 
 def test_a_modem_has_its_mean_delay_in_a_flight():

@@ -2,13 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Forms of inertia, rotors and sensors that the twenty-fifth draw flies, and a stranger."""
 
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from test_withheld_forms import fresh, HOVER, instant, PARAMS
-from test_withheld_forms_of_draw_15 import turning
+from withheld_parts import fresh, HANGING, HOVER, LEVEL, PARAMS, part_of, REST, still, turning
 
 from withheld import outside
 from withheld.constants import induced_velocity
@@ -20,21 +18,6 @@ from withheld.forms.sonars import Pinged
 from withheld.forms.syrups import Syrupy
 from withheld.forms.tags import Tagged
 from withheld.forms.transmissions import Eddied, Hydraulic
-
-REST = np.zeros(3)
-LEVEL = np.eye(3)
-HANGING = np.array([*np.zeros(9), 1.0, *np.zeros(3)])
-
-
-def part_of(kind, size=2.0):
-    part = kind(size, PARAMS, np.random.default_rng(3))
-    part.alter(fresh(), PARAMS)
-    part.begin(np.random.default_rng(4))
-    return part
-
-
-def still(**others):
-    return replace(instant(velocity=REST, rate=REST, turn=np.ones(4)), **others)
 
 
 def test_syrup_takes_up_a_turn_by_the_root_of_time_at_first_and_all_of_it_in_the_end():

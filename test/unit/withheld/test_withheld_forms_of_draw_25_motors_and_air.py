@@ -2,12 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Forms of lags, delays, drag and wind that the twenty-fifth draw flies: what each does."""
 
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from test_withheld_forms import HOVER, instant, PARAMS, PLACES
+from withheld_parts import HOVER, PARAMS, part_of, PLACES, REST, stepped, still
 
 from withheld.forms.mixtures import Unlike
 from withheld.forms.nets import Netted
@@ -19,44 +18,22 @@ from withheld.forms.tasks import Preempted
 from withheld.forms.tunnels import PastBend
 from withheld.forms.vents import Extracted
 
-REST = np.zeros(3)
 UP = np.array([0.0, 0.0, 1.0])
-
-
-def part_of(kind, size=2.0, seed=3):
-    part = kind(size, PARAMS, np.random.default_rng(seed))
-    part.begin(np.random.default_rng(seed + 1))
-    return part
-
-
-def still(**others):
-    return replace(instant(velocity=REST, rate=REST, turn=np.ones(4)), **others)
-
-
-def stepped(motor, before, command, step=0.0005, seconds=1.0):
-    """Return the turns (N, 4) after each step, from one command that was held to another."""
-    before = np.broadcast_to(HOVER * np.asarray(before, float), (4,))
-    command = np.broadcast_to(HOVER * np.asarray(command, float), (4,))
-    speeds, turns = motor.turn(before, before, step), []
-    for _ in range(round(seconds / step)):
-        speeds = motor.turn(speeds, command, step)
-        turns.append(speeds / HOVER)
-    return np.array(turns)
 
 
 @pytest.mark.parametrize('kind', [Servoed, MovingCorner])
 def test_a_command_that_is_held_is_reached_and_is_the_same_in_one_step_or_in_many(kind):
     command = np.array([1.1, 0.9, 1.0, 1.2])
-    assert stepped(kind(2.0, PARAMS, None), 1.0, command)[-1] == pytest.approx(command, abs=1e-6)
-    assert stepped(kind(2.0, PARAMS, None), 1.0, 1.0) == pytest.approx(np.ones((2000, 4)))
-    one = stepped(kind(2.0, PARAMS, None), 1.0, command, 0.004, 0.04)[-1]
-    many = stepped(kind(2.0, PARAMS, None), 1.0, command, 0.0001, 0.04)[-1]
+    assert stepped(kind(2.0, PARAMS, None), command)[-1] == pytest.approx(command, abs=1e-6)
+    assert stepped(kind(2.0, PARAMS, None), 1.0) == pytest.approx(np.ones((2000, 4)))
+    one = stepped(kind(2.0, PARAMS, None), command, 0.004, 0.04)[-1]
+    many = stepped(kind(2.0, PARAMS, None), command, 0.0001, 0.04)[-1]
     assert one == pytest.approx(many, abs=5e-3)
 
 
 def test_a_servo_swings_past_a_small_change_of_the_thrust_by_what_its_damping_says():
     motor, step = Servoed(2.0, PARAMS, None), 0.0005
-    thrust = stepped(motor, 1.0, np.sqrt(1.01), step)[:, 0] ** 2
+    thrust = stepped(motor, np.sqrt(1.01), step)[:, 0] ** 2
     d = motor.DAMPING
     over = np.exp(-np.pi * d / np.sqrt(1.0 - d ** 2))
     assert (thrust.max() - 1.01) / 0.01 == pytest.approx(over, rel=0.01)
@@ -66,23 +43,23 @@ def test_a_servo_swings_past_a_small_change_of_the_thrust_by_what_its_damping_sa
 
 def test_a_servo_has_a_top_rate_and_blades_give_no_less_than_no_thrust():
     motor, step = Servoed(2.0, PARAMS, None), 0.0005
-    thrust = stepped(motor, 1.0, np.sqrt([2.0, 0.2, 1.0, 1.0]), step)[:, :2] ** 2
+    thrust = stepped(motor, np.sqrt([2.0, 0.2, 1.0, 1.0]), step)[:, :2] ** 2
     slopes = np.diff(thrust, axis=0) / step
     most = motor.FASTEST / motor.parameters['time']
     assert np.abs(slopes).max() == pytest.approx(most)
     # It goes at that rate for most of the way, up as down.
     assert np.median(slopes[:round(0.5 / most / step)], axis=0) == pytest.approx([most, -most])
-    assert stepped(Servoed(2.0, PARAMS, None), 1.0, 0.0)[-1] == pytest.approx(np.zeros(4),
-                                                                              abs=1e-3)
+    assert stepped(Servoed(2.0, PARAMS, None), 0.0)[-1] == pytest.approx(np.zeros(4),
+                                                                         abs=1e-3)
 
 
 def test_behind_a_moving_corner_the_thrust_is_fast_and_the_turns_are_slow():
     motor, step = MovingCorner(2.0, PARAMS, None), 0.0005
     time = motor.parameters['time']
-    together = (1.1 - stepped(motor, 1.0, 1.1, step)[:, 0]) / 0.1
+    together = (1.1 - stepped(motor, 1.1, step)[:, 0]) / 0.1
     since = step * np.arange(1, len(together) + 1)
     assert together == pytest.approx(np.exp(-since / (motor.MOTOR * time)), abs=1e-6)
-    turns = stepped(MovingCorner(2.0, PARAMS, None), 1.0, [1.1, 0.9, 0.9, 1.1], step)
+    turns = stepped(MovingCorner(2.0, PARAMS, None), [1.1, 0.9, 0.9, 1.1], step)
     assert turns.mean(axis=1) == pytest.approx(np.ones(2000))
     missing = (1.1 - turns[:, 0]) / 0.1
     assert step * (0.5 + missing.sum()) == pytest.approx(time, rel=2e-3)
@@ -95,7 +72,7 @@ def test_behind_a_moving_corner_the_thrust_is_fast_and_the_turns_are_slow():
 @pytest.mark.parametrize(('mean', 'corner'), [(0.9, 0.7), (1.2, 1.6), (0.5, 0.4), (1.6, 2.5)])
 def test_the_corner_moves_with_the_throttle_between_its_ends(mean, corner):
     motor, step = MovingCorner(2.0, PARAMS, None), 0.0005
-    turns = stepped(motor, mean, mean + np.array([0.1, -0.1, -0.1, 0.1]), step, 2.0)
+    turns = stepped(motor, mean + np.array([0.1, -0.1, -0.1, 0.1]), step, 2.0, before=mean)
     missing = (mean + 0.1 - turns[:, 0]) / 0.1
     time = motor.MOTOR + (1.0 - motor.MOTOR) / corner
     assert step * (0.5 + missing.sum()) == pytest.approx(time * motor.parameters['time'], rel=5e-3)

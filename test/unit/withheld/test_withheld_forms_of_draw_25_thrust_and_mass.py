@@ -2,12 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Forms of inflow, ground, battery, thrust and mass that the twenty-fifth draw flies."""
 
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from test_withheld_forms import HOVER, instant, PARAMS
+from withheld_parts import above, drained, HOVER, PARAMS, part_of, RADIUS, REST, still
 
 from withheld.constants import GRAVITY
 from withheld.forms.chargers import ToppedUp
@@ -20,47 +19,22 @@ from withheld.forms.kites import Kiting
 from withheld.forms.sheets import Spanning
 from withheld.forms.tarmacs import Sunbaked
 
-REST = np.zeros(3)
-RADIUS = PARAMS['rotor_radius']
-
-
-def still(**others):
-    return replace(instant(velocity=REST, rate=REST, turn=np.ones(4)), **others)
-
-
-def above(radii, **others):
-    return still(heights=np.full(4, radii * RADIUS), **others)
-
-
-def made(kind, size=2.0, params=PARAMS):
-    part = kind(size, params, np.random.default_rng(3))
-    part.begin(np.random.default_rng(4))
-    return part
-
 
 def passed(part, seconds, step=0.005):
     for _ in range(round(seconds / step)):
         part.after(step, np.eye(3), REST)
 
 
-def drained(battery, turns, step=0.01):
-    ratios = []
-    for k, turn in enumerate(turns):
-        battery.drain(step * k, step, np.broadcast_to(turn, (4,)))
-        ratios.append(battery.ratio)
-    return np.array(ratios)
-
-
 @pytest.mark.parametrize('kind', [Drooping, Spanning])
 def test_rotors_at_rest_are_nominal_and_a_climb_takes_thrust(kind):
-    part = made(kind)
+    part = part_of(kind)
     assert part.gain(still()) == pytest.approx(np.ones(4))
     assert np.all(part.gain(still(air=np.array([0.0, 0.0, 2.0]))) < 1.0)
     assert np.all(part.gain(still(air=np.array([5.0, 0.0, 0.0]))) > 1.0)
 
 
 def test_an_engine_slows_down_in_a_climb_by_its_two_times_until_the_governor_has_made_up():
-    part = made(Drooping)
+    part = part_of(Drooping)
     climb = still(air=np.array([0.0, 0.0, part.induced]))
     at_once = part.gain(climb)
     # As much again goes through the disks: that of the power.
@@ -82,7 +56,7 @@ def test_an_engine_slows_down_in_a_climb_by_its_two_times_until_the_governor_has
 
 
 def test_an_engine_slows_down_for_all_rotors_together_and_not_for_a_load():
-    part = made(Drooping)
+    part = part_of(Drooping)
     part.gain(still(speeds=np.full(4, 1.2 * HOVER)))
     assert part._asks == pytest.approx(0.0)
     turns = still(rate=np.array([2.0, 0.0, 0.0]))
@@ -93,7 +67,7 @@ def test_an_engine_slows_down_for_all_rotors_together_and_not_for_a_load():
 
 
 def test_in_fast_flight_all_rotors_have_the_downwash_of_a_wing():
-    part = made(Spanning)
+    part = part_of(Spanning)
     ahead, corner = (part.wing(still(air=np.array(air))) for air in (
         [3.0, 0.0, 0.0], [3.0, 3.0, 0.0]))
     reach = np.hypot(0.12, 0.12)
@@ -109,7 +83,7 @@ def test_in_fast_flight_all_rotors_have_the_downwash_of_a_wing():
 
 
 def test_air_that_is_moved_and_its_velocity_make_the_thrust():
-    part = made(Spanning)
+    part = part_of(Spanning)
     climb, across = (one.ravel() for one in np.meshgrid(
         np.linspace(part.LEAST, 3.0, 14), np.linspace(0.0, 4.0, 9)))
     for wing in (0.8, 1.0, 2.5):
@@ -122,7 +96,7 @@ def test_air_that_is_moved_and_its_velocity_make_the_thrust():
 
 
 def test_heat_takes_thrust_by_the_power_of_free_convection():
-    part = made(Sunbaked)
+    part = part_of(Sunbaked)
     high = part.TOP ** (-1.0 / 3.0)
     lower, upper = part.heat(np.array([2.0, 16.0])) + high
     assert lower / upper == pytest.approx(2.0)
@@ -135,7 +109,7 @@ def test_heat_takes_thrust_by_the_power_of_free_convection():
 
 
 def test_hover_blows_hot_air_away_and_flight_comes_to_it_again():
-    part, hovers = made(Sunbaked), above(3.0)
+    part, hovers = part_of(Sunbaked), above(3.0)
     part.gain(hovers)
     passed(part, 2.0)
     blown = np.exp(-2.0 * np.exp(-part.FADES * 3.0) / part.GOES)
@@ -151,7 +125,7 @@ def test_hover_blows_hot_air_away_and_flight_comes_to_it_again():
 
 
 def test_wakes_collide_where_their_momentum_is_the_same():
-    part = made(Colliding)
+    part = part_of(Colliding)
     speeds = HOVER * np.array([1.0, 1.2, 1.0, 1.2])
     meets = part.meets(speeds)
     # Momentum of each falls by the way: the same where the ways are as the squares of the speeds.
@@ -173,9 +147,9 @@ def test_a_rotor_is_beside_the_nearest_ones_and_height_and_flight_end_it():
     angles = np.arange(6) * np.pi / 3.0
     ring = {f'r{k}': np.array([0.25 * np.cos(a), 0.25 * np.sin(a), 0.0])
             for k, a in enumerate(angles)}
-    six = made(Colliding, params=PARAMS | {'num_rotors': 6, 'rotor_pos': ring})
+    six = part_of(Colliding, params=PARAMS | {'num_rotors': 6, 'rotor_pos': ring})
     assert np.count_nonzero(six.beside_each, axis=1).tolist() == [2] * 6
-    part, speeds = made(Colliding), HOVER * np.array([0.8, 1.2, 0.8, 1.2])
+    part, speeds = part_of(Colliding), HOVER * np.array([0.8, 1.2, 0.8, 1.2])
     assert part.gain(above(40.0, speeds=speeds)) == pytest.approx(np.ones(4), abs=1e-5)
     hovers = part.gain(above(2.0, speeds=speeds)) - 1.0
     flies = part.gain(above(2.0, speeds=speeds, air=np.array([3.0 * part.induced, 0, 0]))) - 1.0
@@ -184,7 +158,7 @@ def test_a_rotor_is_beside_the_nearest_ones_and_height_and_flight_end_it():
 
 
 def test_the_drop_along_a_wire_is_that_of_its_stretches_one_after_another():
-    battery, turns = made(DaisyChained), np.array([1.1, 0.9, 1.2, 1.0])
+    battery, turns = part_of(DaisyChained), np.array([1.1, 0.9, 1.2, 1.0])
     battery.drain(0.0, 1e-9, turns)
     loads, voltage, drops = turns ** 3, 0.0, np.empty(4)
     for place in range(1, 5):
@@ -199,7 +173,7 @@ def test_the_drop_along_a_wire_is_that_of_its_stretches_one_after_another():
 
 
 def test_in_hover_all_rotors_of_a_wire_have_the_same_and_the_pack_falls():
-    battery = made(DaisyChained)
+    battery = part_of(DaisyChained)
     ratios = drained(battery, np.ones(3000))
     assert np.ptp(battery.gain(np.ones(4))) < 1e-12
     assert ratios[-1] == pytest.approx(1.0 - battery.size * (battery.RESISTS + battery.FALLS))
@@ -212,7 +186,7 @@ def test_in_hover_all_rotors_of_a_wire_have_the_same_and_the_pack_falls():
 
 
 def test_a_tether_holds_the_voltage_up_to_its_limit_and_the_pack_gives_the_rest():
-    battery, turn = made(ToppedUp), 0.8 ** (1.0 / 3.0)
+    battery, turn = part_of(ToppedUp), 0.8 ** (1.0 / 3.0)
     assert drained(battery, np.full(500, turn)) == pytest.approx(np.ones(500))
     # Beyond, in constant hover, the pack falls evenly by the current that it gives.
     ratios = drained(battery, np.ones(1000))
@@ -223,7 +197,7 @@ def test_a_tether_holds_the_voltage_up_to_its_limit_and_the_pack_gives_the_rest(
 
 
 def test_what_the_rotors_leave_charges_the_pack_up_to_the_voltage_of_the_tether():
-    battery = made(ToppedUp)
+    battery = part_of(ToppedUp)
     drained(battery, np.ones(2000))
     was = battery._open
     # At first by all that is left, then by what the voltage that is held drives through it.
@@ -240,7 +214,7 @@ def test_what_the_rotors_leave_charges_the_pack_up_to_the_voltage_of_the_tether(
 
 
 def test_an_autopilot_learns_in_hover_and_not_while_it_climbs_hard():
-    part = made(Converging)
+    part = part_of(Converging)
     assert part.gain(still()) == pytest.approx(1.0 + part.share * part.FIRST)
     passed(part, 5.0)
     error = part.STAYS + (part.FIRST - part.STAYS) * np.exp(-5.0 / part.TIME)
@@ -262,7 +236,7 @@ def test_an_autopilot_learns_in_hover_and_not_while_it_climbs_hard():
 
 
 def test_a_bird_carries_itself_the_more_the_faster_it_is_towed():
-    part, true = made(Kiting), dict(PARAMS)
+    part, true = part_of(Kiting), dict(PARAMS)
     part.alter(true, PARAMS)
     weight = (true['mass'] - PARAMS['mass']) * GRAVITY
     assert weight == pytest.approx(part.HANGS * part.parameters['mass'] * GRAVITY)
@@ -279,7 +253,7 @@ def test_a_bird_carries_itself_the_more_the_faster_it_is_towed():
 
 
 def test_the_lift_of_a_bird_is_upright_and_takes_its_time():
-    part, lean = made(Kiting), Rotation.from_euler('xy', [0.2, -0.3]).as_matrix()
+    part, lean = part_of(Kiting), Rotation.from_euler('xy', [0.2, -0.3]).as_matrix()
     now = still(rotation=lean, air=lean.T @ [2.0, 0.0, 0.5])
     assert not np.any(part.wrench(now)[0])
     passed(part, part.TIME)
@@ -290,7 +264,7 @@ def test_the_lift_of_a_bird_is_upright_and_takes_its_time():
 
 
 def test_grains_run_out_evenly_or_not_at_all():
-    part, t = made(Arching), np.arange(0.0, 20.0, 0.01)
+    part, t = part_of(Arching), np.arange(0.0, 20.0, 0.01)
     masses, mean = np.array([part.mass(time) for time in t]), part.parameters['mass']
     rates = -np.diff(masses) / 0.01 / mean
     even = part.RUNS / 20.0
@@ -305,7 +279,7 @@ def test_grains_run_out_evenly_or_not_at_all():
 
 
 def test_jams_last_for_times_by_a_power_law_and_the_mean_is_as_said():
-    part, jams, means = made(Arching), [], []
+    part, jams, means = part_of(Arching), [], []
     for k in range(200):
         part.begin(np.random.default_rng(k))
         jams.append(np.diff(part.times)[1::2])

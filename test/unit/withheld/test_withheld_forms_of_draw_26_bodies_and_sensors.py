@@ -2,13 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Forms of inertia, rotors and sensors that the twenty-sixth draw flies, and a stranger."""
 
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from test_withheld_forms import fresh, HOVER, instant, PARAMS
-from test_withheld_forms_of_draw_15 import turning
+from withheld_parts import HANGING, HOVER, LEVEL, PARAMS, part_of, REST, still, turning
 
 from withheld import outside
 from withheld.constants import induced_velocity
@@ -20,21 +18,6 @@ from withheld.forms.savers import Banded
 from withheld.forms.thermopiles import Infrared
 from withheld.forms.toothing import Toothed
 from withheld.forms.transmitters import Transmitting
-
-REST = np.zeros(3)
-LEVEL = np.eye(3)
-HANGING = np.array([*np.zeros(9), 1.0, *np.zeros(3)])
-
-
-def part_of(kind, size=2.0):
-    part = kind(size, PARAMS, np.random.default_rng(3))
-    part.alter(fresh(), PARAMS)
-    part.begin(np.random.default_rng(4))
-    return part
-
-
-def still(**others):
-    return replace(instant(velocity=REST, rate=REST, turn=np.ones(4)), **others)
 
 
 def test_hoses_take_up_a_turn_and_brake_it_only_while_they_spray():

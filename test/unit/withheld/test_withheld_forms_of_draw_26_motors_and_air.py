@@ -2,11 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Forms of lags, delays, drag and wind that the twenty-sixth draw flies: what each does."""
 
-from dataclasses import replace
 
 import numpy as np
 import pytest
-from test_withheld_forms import HOVER, instant, PARAMS, PLACES
+from withheld_parts import HOVER, PARAMS, part_of, PLACES, REST, stepped, still
 
 from withheld.forms.arrays import HandedOn
 from withheld.forms.batches import Batched
@@ -18,51 +17,28 @@ from withheld.forms.mouths import Breathing
 from withheld.forms.shapers import Shaped
 from withheld.forms.stalls import LateParting
 
-REST = np.zeros(3)
-
-
-def part_of(kind, size=2.0, seed=3):
-    part = kind(size, PARAMS, np.random.default_rng(seed))
-    part.begin(np.random.default_rng(seed + 1))
-    return part
-
-
-def still(**others):
-    return replace(instant(velocity=REST, rate=REST, turn=np.ones(4)), **others)
-
-
-def stepped(motor, before, command, step=0.0005, seconds=1.0):
-    """Return the turns (N, 4) after each step, from one command that was held to another."""
-    before = np.broadcast_to(HOVER * np.asarray(before, float), (4,))
-    command = np.broadcast_to(HOVER * np.asarray(command, float), (4,))
-    speeds, turns = motor.turn(before, before, step), []
-    for _ in range(round(seconds / step)):
-        speeds = motor.turn(speeds, command, step)
-        turns.append(speeds / HOVER)
-    return np.array(turns)
-
 
 @pytest.mark.parametrize('kind', [Carburetted, Shaped])
 def test_a_command_that_is_held_is_reached_and_is_the_same_in_one_step_or_in_many(kind):
     command = np.array([1.1, 0.9, 1.0, 1.2])
-    assert stepped(kind(2.0, PARAMS, None), 1.0, command)[-1] == pytest.approx(command, abs=1e-6)
-    assert stepped(kind(2.0, PARAMS, None), 1.0, 1.0) == pytest.approx(np.ones((2000, 4)))
-    one = stepped(kind(2.0, PARAMS, None), 1.0, command, 0.004, 0.04)[-1]
-    many = stepped(kind(2.0, PARAMS, None), 1.0, command, 0.0001, 0.04)[-1]
+    assert stepped(kind(2.0, PARAMS, None), command)[-1] == pytest.approx(command, abs=1e-6)
+    assert stepped(kind(2.0, PARAMS, None), 1.0) == pytest.approx(np.ones((2000, 4)))
+    one = stepped(kind(2.0, PARAMS, None), command, 0.004, 0.04)[-1]
+    many = stepped(kind(2.0, PARAMS, None), command, 0.0001, 0.04)[-1]
     assert one == pytest.approx(many, abs=5e-3)
 
 
 @pytest.mark.parametrize(('kind', 'change'), [(Carburetted, 1e-3), (Shaped, 0.2)])
 def test_a_step_misses_its_mean_time(kind, change):
     motor, step = kind(2.0, PARAMS, None), 0.0005
-    missing = (1.0 + change - stepped(motor, 1.0, 1.0 + change, step)[:, 0]) / change
+    missing = (1.0 + change - stepped(motor, 1.0 + change, step)[:, 0]) / change
     assert step * (0.5 + missing.sum()) == pytest.approx(motor.parameters['time'], rel=5e-3)
 
 
 def test_of_fuel_a_part_burns_at_once_and_the_rest_as_it_dries():
     motor, step = Carburetted(2.0, PARAMS, None), 0.0005
     time, change = motor.parameters['time'], 1e-3
-    turns = stepped(motor, 1.0, 1.0 + change, step)[:, 0]
+    turns = stepped(motor, 1.0 + change, step)[:, 0]
     since = step * np.arange(1, len(turns) + 1)
     own, dries = motor.SPEED * time, (1.0 - motor.SPEED) / motor.WETS * time
     # Partial fractions of a lag behind what is short by WETS at first.
@@ -74,7 +50,7 @@ def test_of_fuel_a_part_burns_at_once_and_the_rest_as_it_dries():
 def test_an_engine_without_fuel_is_braked_by_its_propeller_alone():
     motor, step = Carburetted(2.0, PARAMS, None), 0.0005
     motor.WETS = 1e-9
-    turns = stepped(motor, 1.0, 0.0, step, 0.2)[:, 0]
+    turns = stepped(motor, 0.0, step, 0.2)[:, 0]
     since = step * np.arange(1, len(turns) + 1)
     own = motor.SPEED * motor.parameters['time']
     assert turns == pytest.approx(1.0 / (1.0 + since / (2.0 * own)), rel=2e-3)
@@ -83,7 +59,7 @@ def test_an_engine_without_fuel_is_braked_by_its_propeller_alone():
 def test_a_shaper_gives_the_rest_half_a_swing_later_and_nothing_swings_on():
     motor, step = Shaped(2.0, PARAMS, None), 0.0005
     time, later = motor.parameters['time'], motor.later
-    turns = stepped(motor, 1.0, 1.2, step)[:, 0]
+    turns = stepped(motor, 1.2, step)[:, 0]
     since = step * np.arange(1, len(turns) + 1)
     lag = motor.MOTOR * time
     first, rest = ((1.0 - np.exp(-np.maximum(since - at, 0.0) / lag)) for at in (0.0, later))

@@ -2,12 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Forms of inflow, ground, battery, thrust and mass that the twenty-sixth draw flies."""
 
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from test_withheld_forms import HOVER, instant, PARAMS
+from withheld_parts import above, drained, HOVER, PARAMS, part_of, RADIUS, still
 
 from withheld.constants import GRAVITY
 from withheld.forms.cans import Pressurised
@@ -20,42 +19,17 @@ from withheld.forms.pulleys import Balanced
 from withheld.forms.roofs import Gabled
 from withheld.forms.strakes import Fenced
 
-REST = np.zeros(3)
-RADIUS = PARAMS['rotor_radius']
-
-
-def still(**others):
-    return replace(instant(velocity=REST, rate=REST, turn=np.ones(4)), **others)
-
-
-def above(radii, **others):
-    return still(heights=np.full(4, radii * RADIUS), **others)
-
-
-def made(kind, size=2.0):
-    part = kind(size, PARAMS, np.random.default_rng(3))
-    part.begin(np.random.default_rng(4))
-    return part
-
-
-def drained(battery, turns, step=0.01):
-    ratios = []
-    for k, turn in enumerate(turns):
-        battery.drain(step * k, step, np.broadcast_to(turn, (4,)))
-        ratios.append(battery.ratio)
-    return np.array(ratios)
-
 
 @pytest.mark.parametrize('kind', [Coaxial, Nozzled])
 def test_rotors_at_rest_are_nominal_and_a_climb_takes_thrust(kind):
-    part = made(kind)
+    part = part_of(kind)
     assert part.gain(still()) == pytest.approx(np.ones(4))
     climbs = part.gain(still(air=np.array([0.0, 0.0, 2.0])))
     assert np.all(climbs < 0.99) and np.ptp(climbs) < 1e-12
 
 
 def test_a_lower_rotor_has_the_upper_ones_wake_until_flight_sweeps_it_off():
-    part = made(Coaxial)
+    part = part_of(Coaxial)
     # All that has come through the upper disk is within its wake's radius, by continuity.
     speed = 1.0 + part.APART / np.hypot(1.0, part.APART)
     assert part.narrow() ** 2 * speed == pytest.approx(1.0)
@@ -74,7 +48,7 @@ def test_a_lower_rotor_has_the_upper_ones_wake_until_flight_sweeps_it_off():
 
 
 def test_a_jet_has_the_pressure_of_its_fan_and_the_momentum_that_it_adds():
-    part = made(Nozzled)
+    part = part_of(Nozzled)
     for climb, across in ((0.0, 0.0), (0.4, 0.0), (-0.3, 0.2), (0.2, 0.5)):
         jet = float(part.jet(np.array(climb), np.array(across)))
         fan = (1.0 + part.LOSES) * (1.0 + part.FALLS * (1.0 - jet))
@@ -88,7 +62,7 @@ def test_a_jet_has_the_pressure_of_its_fan_and_the_momentum_that_it_adds():
 
 
 def test_level_flight_gives_a_jet_nothing_and_takes_some_once_the_flow_parts():
-    part = made(Nozzled)
+    part = part_of(Nozzled)
     whole = part.induced * np.sqrt(2.0 / part.NOZZLE)
     clings, parts = (part.gain(still(air=np.array([0.0, share * whole, 0.0]))) for share in (
         part.CLINGS, 3.0 * part.CLINGS))
@@ -96,7 +70,7 @@ def test_level_flight_gives_a_jet_nothing_and_takes_some_once_the_flow_parts():
 
 
 def test_a_fountain_is_held_between_strakes_in_still_hover_near_ground():
-    part = made(Fenced)
+    part = part_of(Fenced)
     image = 1.0 / (1.0 - 1.0 / 64.0) - 1.0
     assert part.gain(above(2.0)) == pytest.approx(np.full(
         4, 1.0 + part.size * (image + part.HOLDS * np.exp(-2.0 * part.FADES))))
@@ -110,7 +84,7 @@ def test_a_fountain_is_held_between_strakes_in_still_hover_near_ground():
 
 
 def test_a_fountain_rises_upright_and_away_from_strong_rotors():
-    part = made(Fenced)
+    part = part_of(Fenced)
     strong = HOVER * np.sqrt([1.1, 0.9, 0.9, 1.1])      # those to the left
     shift = part.shift(2.0, above(2.0, speeds=strong))
     assert shift == pytest.approx([0.0, -part.MOVES * 0.1 * 0.12 / RADIUS])
@@ -121,7 +95,7 @@ def test_a_fountain_rises_upright_and_away_from_strong_rotors():
 
 
 def test_a_roof_falls_off_to_both_sides_of_its_ridge():
-    part = made(Gabled)
+    part = part_of(Gabled)
     part.across, part.ridge = np.array([1.0, 0.0, 0.0]), 0.1
 
     def gain(place, **others):
@@ -142,7 +116,7 @@ def test_a_roof_falls_off_to_both_sides_of_its_ridge():
 
 
 def test_contacts_resist_most_where_all_rotors_turn_at_their_resonance():
-    battery = made(Chattering)
+    battery = part_of(Chattering)
     worst = battery.resists(np.full(4, battery.resonance))
     assert worst == pytest.approx((1.0 - battery.TAKES) ** -0.5)
     assert battery.resists(np.full(4, 3.0)) == pytest.approx(1.0, abs=2e-3)
@@ -157,7 +131,7 @@ def test_contacts_resist_most_where_all_rotors_turn_at_their_resonance():
 
 
 def test_a_governor_without_play_answers_a_load_by_its_oscillation_that_dies_away():
-    battery = made(Surging)
+    battery = part_of(Surging)
     battery.PLAY, battery._gives, battery.FINE = 0.0, 1.0, 0.0005
     load, t = 1.2, 0.01 * np.arange(1, 301)
     ratios = drained(battery, np.full(300, load ** (1.0 / 3.0)))
@@ -171,7 +145,7 @@ def test_a_governor_without_play_answers_a_load_by_its_oscillation_that_dies_awa
 
 def test_an_engine_with_play_hunts_for_ever_by_as_much_as_there_is_play():
     def hunts(play):
-        battery = made(Surging)
+        battery = part_of(Surging)
         battery.PLAY, battery._gives = play, 1.0 + 0.9 * play
         return drained(battery, np.ones(4000)) - (1.0 - battery.size * battery.RESISTS)
 
@@ -184,7 +158,7 @@ def test_an_engine_with_play_hunts_for_ever_by_as_much_as_there_is_play():
 
 
 def test_dust_acts_from_the_tips_to_a_radius_by_the_speed_and_the_dust():
-    part = made(Dusted)
+    part = part_of(Dusted)
     assert part.gain(still(time=0.0)) == pytest.approx(np.ones(4))
     turn = np.array([0.5, 1.0, 1.1, 2.2])
     gain = part.gain(still(time=0.0, speeds=HOVER * turn))
@@ -198,7 +172,7 @@ def test_dust_acts_from_the_tips_to_a_radius_by_the_speed_and_the_dust():
 
 
 def test_a_counterweight_takes_from_the_weight_what_it_adds_to_the_mass():
-    part, lean = made(Balanced), Rotation.from_euler('xy', [0.2, -0.3]).as_matrix()
+    part, lean = part_of(Balanced), Rotation.from_euler('xy', [0.2, -0.3]).as_matrix()
     weight = -part.parameters['mass'] * GRAVITY
     assert weight > 0.0
     for rises in (0.0, 2.0, -3.0):
@@ -215,7 +189,7 @@ def test_a_counterweight_takes_from_the_weight_what_it_adds_to_the_mass():
 
 
 def test_a_pulley_rubs_against_the_way_and_a_slack_line_does_not_push():
-    part = made(Balanced)
+    part = part_of(Balanced)
     up, rest, down = (part.wrench(still(velocity=np.array([0.0, 0.0, v])))[0][2]
                       for v in (5.0, 0.0, -5.0))
     assert [up / rest, down / rest] == pytest.approx([1.0 - part.RUBS, 1.0 + part.RUBS])
@@ -224,7 +198,7 @@ def test_a_pulley_rubs_against_the_way_and_a_slack_line_does_not_push():
 
 
 def test_a_can_empties_by_the_root_of_the_pressure_of_its_gas():
-    part, mean = made(Pressurised), made(Pressurised).parameters['mass']
+    part, mean = part_of(Pressurised), part_of(Pressurised).parameters['mass']
     part.times, part.opened = np.array([0.0, 100.0]), np.array([0.0, 100.0])
     assert part.mass(0.0) == pytest.approx(part.FIRST * mean)
     assert part.mass(part.LASTS) == pytest.approx((part.FIRST - part.SPRAYS) * mean)
@@ -240,7 +214,7 @@ def test_a_can_empties_by_the_root_of_the_pressure_of_its_gas():
 
 
 def test_a_can_sprays_in_bursts_whose_jets_push_up_and_the_mean_is_as_said():
-    part, t = made(Pressurised), np.arange(0.0, 20.0, 0.01)
+    part, t = part_of(Pressurised), np.arange(0.0, 20.0, 0.01)
     for time in t[::7]:
         wrench = part.wrench(still(time=time))
         flow = -(part.mass(time + 1e-6) - part.mass(time)) / 1e-6

@@ -2,14 +2,23 @@
 # SPDX-License-Identifier: Apache-2.0
 """Forms of ordinary loads, rotors and sensors, and two ordinary strangers."""
 
-from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from test_withheld_forms import fresh, HOVER, instant, PARAMS
-from test_withheld_forms_of_draw_15 import turning
+from withheld_parts import (
+    HOVER,
+    LEVEL,
+    PARAMS,
+    part_of,
+    REST,
+    SPINS,
+    STATE,
+    still,
+    turning,
+    WEIGHT,
+)
 
 from withheld import outside
 from withheld.constants import arm_length, induced_velocity
@@ -26,23 +35,6 @@ from withheld.forms.solders import ColdSoldered
 from withheld.forms.spares import Spare
 from withheld.forms.stabilisers import Stabilised
 from withheld.forms.wake_boxes import InWake
-
-REST = np.zeros(3)
-LEVEL = np.eye(3)
-WEIGHT = 9.81 * PARAMS['mass']
-SPINS = PARAMS['rotor_directions']
-STATE = np.array([*np.arange(1.0, 7.0), 0.0, 0.0, 0.6, 0.8, 0.4, -1.0, 0.2])
-
-
-def part_of(kind, size=2.0):
-    part = kind(size, PARAMS, np.random.default_rng(3))
-    part.alter(fresh(), PARAMS)
-    part.begin(np.random.default_rng(4))
-    return part
-
-
-def still(**others):
-    return replace(instant(velocity=REST, rate=REST, turn=np.ones(4)), **others)
 
 
 def test_a_box_in_the_wake_is_pressed_down_until_flight_sweeps_the_wake_off():

@@ -2,11 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Forms of lags, drag, wind, thrust and batteries of common vehicles: what each does."""
 
-from dataclasses import replace
 
 import numpy as np
 import pytest
-from test_withheld_forms import HOVER, instant, PARAMS, PLACES
+from withheld_parts import drained, HOVER, PARAMS, part_of, PLACES, REST, SPINS, stepped, still
 
 from withheld.forms.advances import Advancing
 from withheld.forms.axes import ThrottleSmoothed, YawSmoothed
@@ -24,29 +23,6 @@ from withheld.forms.gauges import SeldomRead
 from withheld.forms.latencies import LongTailed
 from withheld.forms.powers import ConstantPower
 from withheld.forms.tilts import LeaningThrust
-
-REST = np.zeros(3)
-SPINS = PARAMS['rotor_directions']
-
-
-def part_of(kind, size=2.0, seed=3):
-    part = kind(size, PARAMS, np.random.default_rng(seed))
-    part.begin(np.random.default_rng(seed + 1))
-    return part
-
-
-def still(**others):
-    return replace(instant(velocity=REST, rate=REST, turn=np.ones(4)), **others)
-
-
-def stepped(motor, command, step=0.0005, seconds=1.0):
-    """Return the turns (N, 4) after each step, from hover that was held to a command."""
-    hover, command = np.full(4, HOVER), HOVER * np.broadcast_to(np.asarray(command, float), (4,))
-    speeds, turns = motor.turn(hover, hover, step), []
-    for _ in range(round(seconds / step)):
-        speeds = motor.turn(speeds, command, step)
-        turns.append(speeds / HOVER)
-    return np.array(turns)
 
 
 @pytest.mark.parametrize('kind', [YawSmoothed, ThrottleSmoothed])
@@ -274,15 +250,6 @@ def test_a_lift_by_the_height_alone_is_the_same_for_slow_and_fast_rotors():
              for turn in (0.7, 1.0, 1.3)]
     assert lifts[0] == pytest.approx(lifts[1]) and lifts[2] == pytest.approx(lifts[1])
     assert lifts[1] == pytest.approx(part.size * part.MOST / np.array([2.0, 3.0, 4.0, 9.0]) ** 2)
-
-
-def drained(battery, loads, step=0.01):
-    """Return the ratios after each step of loads, over that in hover."""
-    ratios = []
-    for k, load in enumerate(loads):
-        battery.drain(step * k, step, np.full(4, load ** (1.0 / 3.0)))
-        ratios.append(battery.ratio)
-    return np.array(ratios)
 
 
 def test_a_load_takes_a_part_at_once_and_the_rest_by_two_times():

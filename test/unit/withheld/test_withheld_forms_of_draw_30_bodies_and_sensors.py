@@ -2,13 +2,24 @@
 # SPDX-License-Identifier: Apache-2.0
 """Forms of ordinary loads, rotors and sensors, and three ordinary strangers."""
 
-from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from test_withheld_forms import fresh, HOVER, instant, PARAMS
+from withheld_parts import (
+    fresh,
+    HOVER,
+    LEVEL,
+    PARAMS,
+    part_of,
+    PLACES,
+    REST,
+    SPINS,
+    STATE,
+    still,
+    WEIGHT,
+)
 
 from withheld import outside
 from withheld.constants import arm_length
@@ -22,24 +33,6 @@ from withheld.forms.followers import FollowsAll
 from withheld.forms.injections import Injected
 from withheld.forms.oscillators import SlowClock
 from withheld.forms.sweeps import SweptBack
-
-REST = np.zeros(3)
-LEVEL = np.eye(3)
-WEIGHT = 9.81 * PARAMS['mass']
-SPINS = PARAMS['rotor_directions']
-PLACES = np.array(list(PARAMS['rotor_pos'].values()))
-STATE = np.array([*np.arange(1.0, 7.0), 0.0, 0.0, 0.6, 0.8, 0.4, -1.0, 0.2])
-
-
-def part_of(kind, size=2.0):
-    part = kind(size, PARAMS, np.random.default_rng(3))
-    part.alter(fresh(), PARAMS)
-    part.begin(np.random.default_rng(4))
-    return part
-
-
-def still(**others):
-    return replace(instant(velocity=REST, rate=REST, turn=np.ones(4)), **others)
 
 
 def weighs(part, now):

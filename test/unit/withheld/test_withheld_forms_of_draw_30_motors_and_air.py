@@ -2,13 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Forms of lags, drag, wind, thrust and batteries of ordinary vehicles: what each does."""
 
-from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from test_withheld_forms import HOVER, instant, PARAMS, PLACES
+from withheld_parts import drained, HOVER, PARAMS, part_of, PLACES, RADIUS, REST, stepped, still
 
 from withheld import outside
 from withheld.forms.ages import UnlikeAges
@@ -22,36 +21,14 @@ from withheld.forms.ratings import ByRating
 from withheld.forms.slants import LeaningIn
 from withheld.forms.whips import BendingAerials
 
-REST = np.zeros(3)
 AHEAD = PLACES[:, 0] > 0.0
-RADIUS = PARAMS['rotor_radius']
-
-
-def part_of(kind, size=2.0, seed=3):
-    part = kind(size, PARAMS, np.random.default_rng(seed))
-    part.begin(np.random.default_rng(seed + 1))
-    return part
-
-
-def still(**others):
-    return replace(instant(velocity=REST, rate=REST, turn=np.ones(4)), **others)
-
-
-def stepped(motor, command, step=0.0005, seconds=0.5):
-    """Return the turns (N, 4) after each step, from hover that was held to a command."""
-    hover, command = np.full(4, HOVER), HOVER * np.broadcast_to(np.asarray(command, float), (4,))
-    speeds, turns = motor.turn(hover, hover, step), []
-    for _ in range(round(seconds / step)):
-        speeds = motor.turn(speeds, command, step)
-        turns.append(speeds / HOVER)
-    return np.array(turns)
 
 
 @pytest.mark.parametrize('kind', [Interpolated, UnlikeEnds])
 def test_a_command_that_is_held_is_reached_and_is_the_same_in_one_step_or_in_many(kind):
     command = np.array([1.1, 0.9, 1.0, 1.2])
-    assert stepped(part_of(kind), command)[-1] == pytest.approx(command, abs=1e-4)
-    assert stepped(part_of(kind), 1.0) == pytest.approx(np.ones((1000, 4)))
+    assert stepped(part_of(kind), command, seconds=0.5)[-1] == pytest.approx(command, abs=1e-4)
+    assert stepped(part_of(kind), 1.0, seconds=0.5) == pytest.approx(np.ones((1000, 4)))
     # Those that start a little sooner or later have another part of their ramp.
     one = stepped(part_of(kind), command, 0.0005, 0.02)[-1]
     assert one == pytest.approx(stepped(part_of(kind), command, 0.0001, 0.02)[-1], abs=8e-3)
@@ -61,7 +38,7 @@ def test_what_is_interpolated_has_no_steps_and_is_late_by_its_time_on_average():
     step, areas, most = 0.0005, [], []
     for seed in range(40):
         motor = part_of(Interpolated, seed=seed)
-        missing = 1.0 - (stepped(motor, 1.1, step)[:, 0] - 1.0) / 0.1
+        missing = 1.0 - (stepped(motor, 1.1, step, 0.5)[:, 0] - 1.0) / 0.1
         areas.append(step * missing.sum())
         most.append(np.abs(np.diff(missing)).max())
         # Nothing at all until a command is picked, which is within the time of a ramp.
@@ -75,7 +52,7 @@ def test_what_is_interpolated_has_no_steps_and_is_late_by_its_time_on_average():
 def test_without_their_lag_the_motors_ramp_in_a_straight_line():
     motor = part_of(Interpolated)
     motor.OWN, step = 1e-9, 0.0005
-    turns = stepped(motor, 1.1, step)[:, 0]
+    turns = stepped(motor, 1.1, step, 0.5)[:, 0]
     rising = turns[(turns > 1.005) & (turns < 1.095)]
     assert len(rising) >= 15
     assert np.diff(rising) == pytest.approx(np.full(len(rising) - 1, 0.1 * step / motor.every))
@@ -85,7 +62,7 @@ def test_without_their_lag_the_motors_ramp_in_a_straight_line():
 @pytest.mark.parametrize('seed', range(4))
 def test_one_end_is_slower_and_the_mean_time_stays(seed):
     motor, step = part_of(UnlikeEnds, seed=seed), 0.0005
-    late = step * np.sum(1.0 - (stepped(motor, 1.1, step) - 1.0) / 0.1, axis=0)
+    late = step * np.sum(1.0 - (stepped(motor, 1.1, step, 0.5) - 1.0) / 0.1, axis=0)
     time = motor.parameters['time']
     assert late.mean() == pytest.approx(time, rel=0.03)
     apart = late[AHEAD].mean() - late[~AHEAD].mean()
@@ -285,15 +262,6 @@ def test_the_lower_end_has_more_of_the_ground(seed):
         np.ones(4), abs=1e-4)
 
 
-def drained(battery, loads, step=0.01):
-    """Return the ratios after each step of loads, over that in hover."""
-    ratios = []
-    for k, load in enumerate(loads):
-        battery.drain(step * k, step, np.full(4, load ** (1.0 / 3.0)))
-        ratios.append(battery.ratio)
-    return np.array(ratios)
-
-
 def packs():
     """Return a battery of the same case with each of its packs."""
     found = {}
@@ -328,7 +296,7 @@ def test_a_pack_resists_at_once_and_within_seconds_by_its_age():
 
 def test_the_charge_that_is_taken_stays_taken():
     battery = packs()[2]
-    drained(battery, np.full(3000, 1.5))
+    drained(battery, np.full(3000, 1.5 ** (1.0 / 3.0)))
     rest = 1.0 - drained(battery, np.zeros(3000))[-1]
     assert rest == pytest.approx(battery.size * 1.4 * 1.5 * battery.FALLS, rel=1e-3)
 

@@ -2,12 +2,22 @@
 # SPDX-License-Identifier: Apache-2.0
 """More forms of ordinary loads, rotors and sensors, and two ordinary strangers."""
 
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from test_withheld_forms import fresh, HOVER, instant, PARAMS
+from withheld_parts import (
+    fresh,
+    HOVER,
+    LEVEL,
+    PARAMS,
+    part_of,
+    REST,
+    SPINS,
+    STATE,
+    still,
+    WEIGHT,
+)
 
 from withheld import outside
 from withheld.constants import induced_velocity
@@ -22,23 +32,7 @@ from withheld.forms.operators import Tilted
 from withheld.forms.sessions import Uncharged
 from withheld.forms.trims import Trimmed
 
-REST = np.zeros(3)
-LEVEL = np.eye(3)
-WEIGHT = 9.81 * PARAMS['mass']
-SPINS = PARAMS['rotor_directions']
-STATE = np.array([*np.arange(1.0, 7.0), 0.0, 0.0, 0.6, 0.8, 0.4, -1.0, 0.2])
 TIMES = np.arange(0.0, 20.0, 0.02)
-
-
-def part_of(kind, size=2.0, flight=4):
-    part = kind(size, PARAMS, np.random.default_rng(3))
-    part.alter(fresh(), PARAMS)
-    part.begin(np.random.default_rng(flight))
-    return part
-
-
-def still(**others):
-    return replace(instant(velocity=REST, rate=REST, turn=np.ones(4)), **others)
 
 
 def test_a_magnet_carries_a_part_or_none_and_no_two_parts_alike():

@@ -2,12 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Forms of lags, drag, wind, thrust and batteries of ordinary vehicles: what each does."""
 
-from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from test_withheld_forms import HOVER, instant, PARAMS, PLACES
+from withheld_parts import HOVER, PARAMS, part_of, PLACES, RADIUS, REST, STATE, stepped, still
 
 from withheld import outside
 from withheld.forms.bests import BestBetween
@@ -21,36 +20,11 @@ from withheld.forms.lanes import Lanes
 from withheld.forms.passes import PerPass
 from withheld.forms.sprayers import SprayBoom
 
-REST = np.zeros(3)
-RADIUS = PARAMS['rotor_radius']
-
-STATE = np.array([*np.arange(1.0, 7.0), 0.0, 0.0, 0.6, 0.8, 0.4, -1.0, 0.2])
-
-
-def part_of(kind, size=2.0, seed=3):
-    part = kind(size, PARAMS, np.random.default_rng(seed))
-    part.begin(np.random.default_rng(seed + 1))
-    return part
-
-
-def still(**others):
-    return replace(instant(velocity=REST, rate=REST, turn=np.ones(4)), **others)
-
-
-def stepped(motor, command, step=0.0005, seconds=0.5):
-    """Return the turns (N, 4) after each step, from hover that was held to a command."""
-    hover, command = np.full(4, HOVER), HOVER * np.broadcast_to(np.asarray(command, float), (4,))
-    speeds, turns = motor.turn(hover, hover, step), []
-    for _ in range(round(seconds / step)):
-        speeds = motor.turn(speeds, command, step)
-        turns.append(speeds / HOVER)
-    return np.array(turns)
-
 
 def test_a_command_that_is_held_is_reached_and_is_the_same_in_one_step_or_in_many():
     command = np.array([1.1, 0.9, 1.0, 1.2])
-    assert stepped(part_of(PerPass), command)[-1] == pytest.approx(command, abs=1e-4)
-    assert stepped(part_of(PerPass), 1.0) == pytest.approx(np.ones((1000, 4)))
+    assert stepped(part_of(PerPass), command, seconds=0.5)[-1] == pytest.approx(command, abs=1e-4)
+    assert stepped(part_of(PerPass), 1.0, seconds=0.5) == pytest.approx(np.ones((1000, 4)))
     one, many = (stepped(part_of(PerPass), command, step, 0.03)[-1] for step in (0.0005, 0.0001))
     assert one == pytest.approx(many, abs=8e-3)
 
@@ -59,7 +33,7 @@ def test_a_program_that_smooths_at_each_pass_is_late_by_its_time_on_average():
     step, late = 0.0005, []
     for seed in range(120):
         motor = part_of(PerPass, seed=seed)
-        late.append(step * np.sum(1.0 - (stepped(motor, 1.1, step)[:, 0] - 1.0) / 0.1))
+        late.append(step * np.sum(1.0 - (stepped(motor, 1.1, step, 0.5)[:, 0] - 1.0) / 0.1))
     assert np.mean(late) == pytest.approx(PerPass(2.0, PARAMS, None).parameters['time'], rel=0.06)
     # Some of them by much more than others, as they are busy.
     assert np.percentile(late, 90) > 1.5 * np.percentile(late, 10)
@@ -68,7 +42,7 @@ def test_a_program_that_smooths_at_each_pass_is_late_by_its_time_on_average():
 def test_each_pass_goes_half_of_what_is_missing_and_takes_longer_while_it_is_busy():
     motor = part_of(PerPass)
     motor.OWN = 0.0
-    missing = 1.0 - (stepped(motor, 1.1, 0.0001)[:, 0] - 1.0) / 0.1
+    missing = 1.0 - (stepped(motor, 1.1, 0.0001, 0.5)[:, 0] - 1.0) / 0.1
     levels = np.unique(missing[missing > 1e-3].round(9))[::-1]
     assert levels[:6] == pytest.approx(0.5 ** np.arange(6), abs=1e-6)
     lasts = []

@@ -4,7 +4,7 @@
 
 import numpy as np
 import pytest
-from test_withheld_forms import HOVER, made, PARAMS
+from withheld_parts import HOVER, made, PARAMS
 
 from withheld.forms import drives, supplies, traffic
 
