@@ -8,6 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 import scipy
 
+from quad_ident_ros.data.differentiated import DIFFERENTIATED
+from quad_ident_ros.data.inertial import SUMMED
 from quad_ident_ros.data.quality.clock import clock_offset, SEVERAL, velocity_offset
 from quad_ident_ros.data.quality.glitches import jumps
 from quad_ident_ros.data.record import EULER, FlightRecord, QUATERNION
@@ -28,21 +30,30 @@ PERIODS = 1.6       # is taken from between
 
 @dataclass(frozen=True)
 class Offset:
-    """How much later than the pose a stream is stamped, s, and its standard error."""
+    """
+    How much later than the pose a stream is stamped, s, and its standard error.
+
+    by_motion: the part of that error, s, that may be alike in all flights; alone: whether one of
+    the flights clearly has an offset by itself.
+    """
 
     value: float
     std: float
-    flights: int = 1
+    by_motion: float
+    alone: bool = False
 
     @property
     def clear(self) -> bool:
-        """Whether it is one, and large enough to move a stream for."""
-        several = (SEVERAL - BY_MOTION) + BY_MOTION * np.sqrt(self.flights)
-        return abs(self.value) > max(several * self.std, LEAST)
+        """Whether it clearly differs from none, and is large enough to move a stream for."""
+        error = (SEVERAL - BY_MOTION) * self.std + BY_MOTION * self.by_motion
+        return self.alone or abs(self.value) > max(error, LEAST)
 
     def like(self, other: 'Offset') -> bool:
         """Return whether another one may be of the same clock."""
-        return abs(self.value - other.value) <= max(ALIKE * np.hypot(self.std, other.std), LEAST)
+        # To take two clocks for one moves a stream by as much as they differ; to take one for two,
+        # by what the motion makes of it, which is less.
+        error = ALIKE * np.hypot(self.std, other.std)
+        return bool(abs(self.value - other.value) <= max(error, LEAST))
 
 
 def aligned(record: FlightRecord, late: dict[str, float]
@@ -75,26 +86,35 @@ def lateness(records: Sequence[FlightRecord], held_out: Sequence[FlightRecord] =
     Return {stream: s} of the streams that are stamped later than the first, of each record.
 
     The slopes of the pose are velocity and rate. Where their stamps clearly differ, the one that
-    comes first keeps its time, for a measurement may be late but never early; one whose offset
-    cannot be determined is taken as not late. Where the offsets of all records agree, they are
-    those of one set of sensors, and the mean of them is that of each. The records that are held
-    out come last, and have no part in it.
+    comes first keeps its time, for a measurement may be late but never early. Where the offsets of
+    all records agree, they are those of one set of sensors, and each record has the mean of them
+    unless it contradicts that. What neither a record nor the others show is taken as not late. The
+    records that are held out come last, and have no part in the mean.
     """
     every = [*records, *held_out]
-    found = [{stream: Offset(-one.offset, one.std) for stream, offset_of in OF_POSE.items()
-              if (one := offset_of(record)) is not None} for record in every]
+    found = [{stream: Offset(-one.offset, one.std, one.std)
+              for stream, offset_of in OF_POSE.items() if (one := offset_of(record)) is not None}
+             for record in every]
     for stream in OF_POSE:
-        common = _common([one[stream] for one in found[:len(records)] if stream in one])
-        if common is None:
-            continue
-        for record, known in zip(every, found, strict=True):
-            if record.has(*STREAMS[stream][:3]) and common.like(known.get(stream, common)):
+        measured = [record.has(*STREAMS[stream][:3]) and stream not in _derived(record)
+                    for record in every]
+        common = mean_if_alike([known[stream] for known, own in zip(found[:len(records)], measured,
+                                                                    strict=False)
+                                if own and stream in known])
+        for known, own in zip(found, measured, strict=True):
+            if own and common is not None and common.like(known.get(stream, common)):
                 known[stream] = common
-    return [_late(one) for one in found]
+    return [later_than_first(known) for known in found]
 
 
-def _common(offsets: Sequence[Offset]) -> Offset | None:
-    """Return the weighted mean of the Offsets of flights, or None where they are not alike."""
+def _derived(record: FlightRecord) -> set[str]:
+    """Return the streams that were made of the pose, or it of them: they show no clock."""
+    summed = 'position' in record.info.get(SUMMED, ())
+    return {*record.info.get(DIFFERENTIATED, ()), *(['velocity'] if summed else [])}
+
+
+def mean_if_alike(offsets: Sequence[Offset]) -> Offset | None:
+    """Return the mean of Offsets of flights by their precision, or None where they differ."""
     if not offsets:
         return None
     mean = _mean(offsets)
@@ -102,17 +122,17 @@ def _common(offsets: Sequence[Offset]) -> Offset | None:
     scatter = np.sum((off / [one.std for one in offsets]) ** 2)
     alike = (np.abs(off).max() <= LEAST
              or scatter <= scipy.special.chdtri(len(offsets) - 1, BY_CHANCE))
-    return replace(mean, flights=len(offsets)) if alike else None
+    return replace(mean, alone=any(one.clear for one in offsets)) if alike else None
 
 
 def _mean(offsets: Sequence[Offset]) -> Offset:
-    """Return the mean of Offsets by their precision."""
     weights = np.array([one.std for one in offsets]) ** -2.0
-    return Offset(float(np.average([one.value for one in offsets], weights=weights)),
-                  float(weights.sum() ** -0.5), min(one.flights for one in offsets))
+    value, by_motion = np.average([(one.value, one.by_motion) for one in offsets], axis=0,
+                                  weights=weights)
+    return Offset(float(value), float(weights.sum() ** -0.5), float(by_motion))
 
 
-def _late(known: dict[str, Offset]) -> dict[str, float]:
+def later_than_first(known: dict[str, Offset]) -> dict[str, float]:
     """Return {stream: s} of those later than the first, by their Offsets from the pose."""
     # Where they share one clock, the better known offset of the two is that of the pose.
     if len(known) == 2 and known['rate'].like(known['velocity']):

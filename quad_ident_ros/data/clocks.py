@@ -36,11 +36,14 @@ def on_one_clock(records: Sequence[FlightRecord], held_out: Sequence[FlightRecor
     """
     Return for each record itself with its streams aligned, {stream: s} moved, and its Answer.
 
-    No Answer is looked for where streams were moved: which of them commands answer is not known.
+    No Answer is looked for in a record that shows by itself that streams are apart: which of them
+    commands answer is not known.
     """
-    found = [aligned(record, late) for record, late in zip(
-        (*records, *held_out), lateness(records, held_out), strict=True)]
-    return [(record, late, None if late else answer_of(record)) for record, late in found]
+    found = []
+    for record, late in zip((*records, *held_out), lateness(records, held_out), strict=True):
+        [own] = lateness([record])
+        found.append((*aligned(record, late), None if own else answer_of(record)))
+    return found
 
 
 def clocks_of(answers: Sequence[Answer | None], held_out: Sequence[Answer | None] = ()

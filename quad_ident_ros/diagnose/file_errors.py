@@ -10,15 +10,14 @@ these are off, so are the parameters, however long the flights are.
 from collections.abc import Sequence
 
 import numpy as np
-import scipy
 
 from quad_ident_ros.diagnose.fitted import distances_of
-from quad_ident_ros.diagnose.frame import frame_at, normal_at
+from quad_ident_ros.diagnose.frame import frame_at
+from quad_ident_ros.diagnose.likeliest import Around
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.greybox.estimate import Estimate
 from quad_ident_ros.greybox.flights import Flight
 from quad_ident_ros.greybox.known_together import with_constants
-from quad_ident_ros.greybox.normal import marginal
 from quad_ident_ros.greybox.nuisances import Layout
 from quad_ident_ros.greybox.parameters import constants_behind, INDEX, limits
 from quad_ident_ros.model.vehicle import Vehicle
@@ -36,13 +35,10 @@ def errors_by_file(chosen: tuple, fit: Estimate, flights: Sequence[Flight], vehi
     if not behind or not count:
         return np.zeros(count)
     columns = [*fit.columns, *(INDEX[name] for name in behind)]
-    layout = Layout(columns, fit.nuisances.columns, len(fit.nuisances.values))
-    frame = frame_at(list(flights), vehicle, fit, layout.wanted, rules)
-    normal = normal_at(frame, fit, layout, distances_of(chosen, fit, vehicle), sizes,
-                       form_error)
-    precision = scipy.linalg.block_diag(np.zeros((len(columns), len(columns))),
-                                        fit.nuisances.precision)
+    wanted = Layout(columns, fit.nuisances.columns, len(fit.nuisances.values)).wanted
+    around = Around(frame_at(list(flights), vehicle, fit, wanted, rules), fit, columns,
+                    distances_of(chosen, fit, vehicle), sizes, form_error)
     size = limits(vehicle)[2, columns]
-    shared = marginal(normal, len(columns), precision)
+    shared = around.marginal(around.step(vehicle))
     held, whole = with_constants(shared, np.array(list(behind.values())), size)
     return np.sqrt(np.maximum(np.diag(whole)[:count] - np.diag(held), 0.0))

@@ -29,20 +29,21 @@ STILL = 1e-6        # m/s, m/s^2 of a mean motion: below it there is none to go 
 
 
 def sensor_covariance(fit: Estimate, flights: Sequence[Flight], gravity: float, rules: Rules,
-                      size: np.ndarray, normal: Callable[[Estimate], Normal]) -> np.ndarray:
+                      size: np.ndarray, normal: Callable[[list[np.ndarray]], Normal]
+                      ) -> np.ndarray:
     """
     Return the covariance (C, C) of an Estimate's columns by the errors of the sensors.
 
     Zero where the states are not those of a filter which follows a gyro, or of a gyro alone. A
     gyro alone that is late is a delay: nothing else says there when the vehicle moved.
-    Args: gravity m/s^2; size (C,): usual sizes of the columns; normal: what makes of an Estimate,
-    by its residuals, the Normal of its columns.
+    Args: gravity m/s^2; size (C,): usual sizes of the columns; normal: what makes the Normal of
+    its columns of residuals (B, n, 12) of each flight.
     """
     found = np.zeros((len(size), len(size)))
     if not len(size) or not (inertial(flights) or follows_gyro(fit, flights, rules)):
         return found
     for pattern in _patterns(flights, gravity, level_error(fit, flights, rules), rules):
-        made = normal(replace(fit, residuals=pattern))
+        made = normal(pattern)
         shift = solve(made.information, made.gradient, size)
         found += np.outer(shift, shift)
     return found

@@ -3,21 +3,19 @@
 """Standard errors of a fitted set: by noise, and by how wrong flights show its formulas to be."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
-import scipy
 
 from quad_ident_ros.diagnose.discrepancy import log_likelihood, scales
 from quad_ident_ros.diagnose.fitted import distances_of, Fitted
-from quad_ident_ros.diagnose.frame import blocks_at, Frame, frame_at, normal_at
+from quad_ident_ros.diagnose.frame import blocks_at, Frame, frame_at
+from quad_ident_ros.diagnose.likeliest import Around
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.diagnose.sensor_errors import sensor_covariance
-from quad_ident_ros.greybox.estimate import Estimate
 from quad_ident_ros.greybox.flights import Flight
 from quad_ident_ros.greybox.known_together import with_constants
-from quad_ident_ros.greybox.normal import covariance_of, first_of, marginal, Normal, solve
-from quad_ident_ros.greybox.nuisances import Layout
+from quad_ident_ros.greybox.normal import covariance_of, first_of
 from quad_ident_ros.greybox.parameters import INDEX, limits, uncertain_constants
 from quad_ident_ros.model.vehicle import Vehicle
 
@@ -80,44 +78,22 @@ def joint_of(fitted: Fitted, flights: Sequence[Flight], frame: Frame, vehicle: V
         for effect in dict.fromkeys(one for one, _ in distances) if effect is not None}
     constants = uncertain_constants(vehicle, fit.columns)
     columns = [*fit.columns, *(INDEX[name] for name in constants)]
-    layout = Layout(columns, fit.nuisances.columns, len(fit.nuisances.values))
+    around = Around(frame, fit, columns, distances, (force, moment), form_error)
     if constants:
-        frame = frame_at(list(flights), vehicle, fit, layout.wanted, rules)
-    precision = scipy.linalg.block_diag(np.zeros((len(columns), len(columns))),
-                                        fit.nuisances.precision)
-
-    def at(one: Estimate, step: np.ndarray | None = None) -> Normal:
-        return normal_at(frame, one, layout, distances, (force, moment), form_error, step)
-
-    def of(one: Estimate) -> Normal:
-        return marginal(at(one), len(columns), precision)
-
-    # Where the discrepancy is marginalised out the likeliest parameters are others: away from
-    # them the blocks scatter by how much each of them shows, too.
-    shared = marginal(at(fit, _step(at(fit), fit, precision, vehicle)), len(columns), precision)
-    size, count = limits(vehicle)[2, columns], len(fit.columns)
+        around = replace(around, frame=frame_at(list(flights), vehicle, fit, around.layout.wanted,
+                                                rules))
+    step = around.step(vehicle)
+    # Away from the likeliest parameters blocks scatter by how much each of them shows, too.
+    shared = around.marginal(step)
+    (lower, upper, size), count = limits(vehicle)[:, columns], len(fit.columns)
     sensors = sensor_covariance(fit, flights, vehicle.gravity, rules, size[:count],
-                                lambda one: first_of(of(one), count))
-    exact = covariance_of(first_of(shared, count), size[:count]) + sensors
+                                lambda residuals: first_of(around.of_residuals(residuals), count))
+    # What is efficient differs from what is not by an error that is independent of its own.
+    apart = np.clip(step[:count], (lower - fit.z[columns])[:count],
+                    (upper - fit.z[columns])[:count])
+    exact = covariance_of(first_of(shared, count), size[:count]) + np.outer(apart, apart) + sensors
     if not constants:
         return Joint(exact, sensors, (), exact, form_errors, form_error)
     _, whole = with_constants(shared, np.array(list(constants.values())), size)
-    whole[:count, :count] += sensors
+    whole[:count, :count] += np.outer(apart, apart) + sensors
     return Joint(exact, sensors, tuple(constants), whole, form_errors, form_error)
-
-
-def _step(normal: Normal, fit: Estimate, precision: np.ndarray, vehicle: Vehicle) -> np.ndarray:
-    """
-    Return the step (C,) from a fit to the likeliest parameters of a Normal, whatever their bounds.
-
-    Constants of the vehicle file, which stand between the fit's columns and nuisances, are held.
-    """
-    values, count = fit.nuisances.values, len(fit.columns)
-    nuisances = range(len(precision) - values.size, len(precision))
-    moved, step = [*range(count), *nuisances], np.zeros(len(precision))
-    inside = np.ix_(moved, moved)
-    now = np.concatenate([fit.z[fit.columns], values.ravel()])
-    size = np.append(limits(vehicle)[2, fit.columns], np.tile(fit.nuisances.spreads, len(values)))
-    step[moved] = solve((normal.information + precision)[inside],
-                        normal.gradient[moved] - precision[inside] @ now, size)
-    return step

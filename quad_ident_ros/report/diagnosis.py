@@ -292,7 +292,8 @@ def _said(finding: dict, alike: list[str]) -> str:
     """Return a finding as a line, a warning with its remedy; alike: flights that have it, too."""
     others = f' ({", ".join(alike)} alike)' if alike else ''
     said = f'{finding["flight"]}{others}: {titled(finding["where"])}: {finding["message"]}'
-    return said if finding['severity'] == 'info' else f'warning: {said}; {finding["remedy"]}'
+    remedy = f'; {finding["remedy"]}' if finding['remedy'] else ''
+    return said if finding['severity'] == 'info' else f'warning: {said}{remedy}'
 
 
 def _of_simulator(found: Diagnosis) -> list[str]:

@@ -8,8 +8,18 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from quad_ident_ros.data.aligned import aligned, lateness, STREAMS
+from quad_ident_ros.data.aligned import (
+    aligned,
+    lateness,
+    later_than_first,
+    mean_if_alike,
+    Offset,
+    STREAMS,
+)
+from quad_ident_ros.data.clocks import on_one_clock
+from quad_ident_ros.data.differentiated import with_motion
 from quad_ident_ros.data.quality import findings
+from quad_ident_ros.data.quality.answer import answer_of
 from quad_ident_ros.data.record import QUATERNION
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.flight.fly import fly_closed_loop
@@ -139,6 +149,54 @@ def test_a_stream_whose_offset_cannot_be_told_stays_where_it_is():
     assert told.keys() == {'pose'}
 
 
+def told(value, std):
+    """Return the Offset that one flight shows, in ms."""
+    return Offset(1e-3 * value, 1e-3 * std, 1e-3 * std)
+
+
+def test_the_mean_of_flights_weighs_them_by_their_precision():
+    mean = mean_if_alike([told(4.0, 0.5), told(5.0, 1.0)])
+    assert mean.value == pytest.approx((4.0 * 4.0 + 5.0) / 5.0 * 1e-3)
+    assert mean.std == pytest.approx(1e-3 / np.sqrt(5.0))
+    # What may be alike in both does not become less: it is between that of the one and the other.
+    assert mean.by_motion == pytest.approx((4.0 * 0.5 + 1.0) / 5.0 * 1e-3)
+
+
+def test_flights_that_show_nothing_hide_no_offset_that_one_of_them_shows():
+    clear, vague = told(2.0, 0.35), told(0.8, 5.0)
+    assert clear.clear and not vague.clear
+    for count in (1, 3, 11):
+        mean = mean_if_alike([clear, *count * [vague]])
+        assert mean.clear and mean.value == pytest.approx(2e-3, rel=0.1)
+
+
+@pytest.mark.parametrize('value, std, count, clear', [
+    (4.0, 1.0, 1, False), (6.0, 1.0, 1, True), (4.0, 1.0, 4, True), (3.0, 1.0, 4, False),
+    (2.4, 1.0, 100, True), (1.9, 1.0, 100, False), (0.4, 0.01, 1, False)])
+def test_flights_together_show_what_each_of_them_does_not(value, std, count, clear):
+    """Five standard errors of one; of many the two that the motion may make in all alike."""
+    assert mean_if_alike(count * [told(value, std)]).clear is clear
+
+
+def test_offsets_that_scatter_more_than_chance_lets_them_are_of_several_clocks():
+    rng, agreed = np.random.default_rng(0), 0
+    for _ in range(400):
+        agreed += mean_if_alike([told(4.0 + rng.normal(), 1.0) for _ in range(3)]) is not None
+    assert 0.92 < agreed / 400 < 0.98
+    assert mean_if_alike([told(0.0, 1.0), told(9.0, 1.0)]) is None
+    assert mean_if_alike([told(0.0, 0.01), told(0.3, 0.01)]) is not None    # too small to matter
+    assert mean_if_alike([]) is None
+
+
+def test_velocity_and_rate_of_one_clock_have_the_better_known_offset():
+    one = later_than_first({'rate': told(-20.5, 0.5), 'velocity': told(-20.0, 0.1)})
+    assert one == {'pose': pytest.approx(0.02002, abs=1e-5)}
+    two = later_than_first({'rate': told(4.0, 0.1), 'velocity': told(0.1, 0.1)})
+    assert two == {'rate': pytest.approx(0.004)}
+    assert later_than_first({'rate': told(4.0, 0.1)}) == {'rate': pytest.approx(0.004)}
+    assert later_than_first({}) == {}
+
+
 def faint(record):
     """Return a record whose attitude is too noisy to say by itself that 6 ms are an offset."""
     turns = 0.015 * np.random.default_rng(len(record)).normal(size=(len(record), 3))
@@ -173,6 +231,23 @@ def test_a_flight_that_is_held_out_has_no_part_in_the_offsets_of_the_others(of_a
     *same, own = lateness(clear, [other])
     assert same == told and own == lateness([other])[0]
     assert own['rate'] == pytest.approx(0.026, abs=1e-3)
+
+
+def test_a_rate_that_was_made_of_the_attitude_shows_no_clock(of_a_late_gyro):
+    *clear, last = of_a_late_gyro
+    made = with_motion(replace(last, columns={name: values for name, values in last.columns.items()
+                                              if name not in STREAMS['rate'][:3]}))
+    assert lateness([*clear, made]) == [*lateness(clear), {}]
+
+
+@pytest.mark.slow
+def test_a_flight_with_commands_is_asked_for_their_clock_unless_its_own_streams_are_apart():
+    sensors = replace(USUAL, imu=Stream(delay=0.006))
+    flights = [flown(0, sensors, None, 'figure8'), faint(flown(1, sensors, None, 'lissajous'))]
+    for (_, late_by, answer), record in zip(on_one_clock(flights), flights, strict=True):
+        own = lateness([record])[0]
+        assert late_by == {'rate': pytest.approx(0.006, abs=5e-4)}
+        assert answer is None if own else answer == answer_of(record)
 
 
 def test_flights_whose_offsets_differ_keep_their_own(of_a_late_gyro):
