@@ -82,18 +82,14 @@ def joint_of(fitted: Fitted, flights: Sequence[Flight], frame: Frame, vehicle: V
     if constants:
         around = replace(around, frame=frame_at(list(flights), vehicle, fit, around.layout.wanted,
                                                 rules))
-    step = around.step(vehicle)
     # Away from the likeliest parameters blocks scatter by how much each of them shows, too.
-    shared = around.marginal(step)
-    (lower, upper, size), count = limits(vehicle)[:, columns], len(fit.columns)
+    shared = around.marginal(around.step(vehicle))
+    size, count = limits(vehicle)[2, columns], len(fit.columns)
     sensors = sensor_covariance(fit, flights, vehicle.gravity, rules, size[:count],
                                 lambda residuals: first_of(around.of_residuals(residuals), count))
-    # What is efficient differs from what is not by an error that is independent of its own.
-    apart = np.clip(step[:count], (lower - fit.z[columns])[:count],
-                    (upper - fit.z[columns])[:count])
-    exact = covariance_of(first_of(shared, count), size[:count]) + np.outer(apart, apart) + sensors
+    exact = covariance_of(first_of(shared, count), size[:count]) + sensors
     if not constants:
         return Joint(exact, sensors, (), exact, form_errors, form_error)
     _, whole = with_constants(shared, np.array(list(constants.values())), size)
-    whole[:count, :count] += np.outer(apart, apart) + sensors
+    whole[:count, :count] += sensors
     return Joint(exact, sensors, tuple(constants), whole, form_errors, form_error)
