@@ -62,7 +62,7 @@ class Around:
 
     def step(self, vehicle: Vehicle) -> np.ndarray:
         """
-        Return the step (C,) from the fit to the likeliest parameters, whatever their bounds.
+        Return how far, (C,), the likeliest parameters are from the fit, whatever their bounds.
 
         Constants are held. The slopes stay those of the fit.
         """

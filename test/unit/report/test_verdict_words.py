@@ -93,7 +93,8 @@ def test_effects_that_a_held_out_flight_has_not_are_those_of_the_flights_that_we
     assert any('predicts it worse' in one for one in caution_lines(found))
 
 
-SINGLE = ({'flight': 'a', 'code': 'blocks', 'severity': 'info', 'where': 't', 'message': 'm'},)
+SINGLE = ({'flight': 'a', 'code': 'blocks', 'severity': 'info', 'where': 't', 'message': 'm',
+           'remedy': ''},)
 
 
 @pytest.mark.parametrize('found', [
