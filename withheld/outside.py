@@ -589,7 +589,25 @@ class Pushed(Force):
         return np.sin(np.pi * share) * self.pushes[last]
 
 
-class Barometer(Influence):
+class HeightThatFollows(Influence):
+    """A height that is off, and that the estimator follows in a TIME, s, with the climb of it."""
+
+    def begin(self, rng):
+        """Start with a height that is right."""
+        self._off, self._last = 0.0, None
+
+    def followed(self, time, state, goal):
+        """Return the state (13,) with a height that comes to be off by a goal, m."""
+        step = 0.0 if self._last is None else time - self._last
+        self._last = time
+        self._off = goal + np.exp(-step / self.TIME) * (self._off - goal)
+        out = state.copy()
+        out[2] += self._off
+        out[5] += (goal - self._off) / self.TIME
+        return out
+
+
+class Barometer(HeightThatFollows):
     """
     A height from a barometer in the flow: the pressure there is not that of air at rest.
 
@@ -605,10 +623,6 @@ class Barometer(Influence):
         """Draw for flow from ahead, behind, left and right what the height is off, s^2/m."""
         self.shares = 0.002 * size * rng.uniform(0.4, 1.0, (2, 2)) * rng.choice([-1.0, 1.0])
 
-    def begin(self, rng):
-        """Start as in hover."""
-        self._off, self._last = 0.0, None
-
     def measured(self, time, state, thrust):
         """Return the state with a height and a climb that are off."""
         x, y, z, w = state[6:10]
@@ -617,13 +631,7 @@ class Barometer(Influence):
             (1 - 2 * (y * y + z * z)) * vx + 2 * (x * y + z * w) * vy + 2 * (x * z - y * w) * vz,
             2 * (x * y - z * w) * vx + (1 - 2 * (x * x + z * z)) * vy + 2 * (y * z + x * w) * vz])
         goal = float(np.sum(np.where(along > 0.0, *self.shares.T) * along ** 2))
-        step = 0.0 if self._last is None else time - self._last
-        self._last = time
-        self._off = goal + np.exp(-step / self.TIME) * (self._off - goal)
-        out = state.copy()
-        out[2] += self._off
-        out[5] += (goal - self._off) / self.TIME
-        return out
+        return self.followed(time, state, goal)
 
 
 class Retractor(Force):
@@ -733,7 +741,7 @@ class Lead(Influence):
         return float(np.clip(self._wound + turned, -self.GIVES, self.GIVES))
 
 
-class Rangefinder(Influence):
+class Rangefinder(HeightThatFollows):
     """
     A height over ground from a rangefinder that looks down, where boxes stand on the floor.
 
@@ -754,10 +762,6 @@ class Rangefinder(Influence):
         self.wide = rng.uniform(*self.WIDE, (self.COUNT, 2))
         self.high = 0.02 * size * rng.uniform(0.5, 1.0, self.COUNT)
 
-    def begin(self, rng):
-        """Start over the floor."""
-        self._off, self._last = 0.0, None
-
     def measured(self, time, state, thrust):
         """Return the state with a height and a climb that are off."""
         x, y, z, w = state[6:10]
@@ -766,13 +770,7 @@ class Rangefinder(Influence):
         spot = state[:2] - max(state[2], 0.0) * aside
         over = np.all(np.abs(spot - self.places) < self.wide, axis=1)
         goal = -float(np.max(self.high * over))
-        step = 0.0 if self._last is None else time - self._last
-        self._last = time
-        self._off = goal + np.exp(-step / self.TIME) * (self._off - goal)
-        out = state.copy()
-        out[2] += self._off
-        out[5] += (goal - self._off) / self.TIME
-        return out
+        return self.followed(time, state, goal)
 
 
 class Sticks(Influence):
