@@ -129,6 +129,32 @@ class Coupled(Influence):
         self.loads = self.shares * [true[key] for key in AXES]
 
 
+class HeldBehind(Coupled):
+    """A second inertia that is pulled after the body by what it is behind, as through springs."""
+
+    FINE = 0.005        # s, the steps
+
+    def begin(self, rng):
+        """Start at rest, not behind."""
+        self._behind, self._turning, self._rate = np.zeros(3), np.zeros(3), np.zeros(3)
+
+    def turns(self):
+        """Return the slope (3,) of its rate, rad/s^2, by what it is behind and both rates."""
+        raise NotImplementedError
+
+    def wrench(self, now):
+        """Return the moment that pulls it, on the body."""
+        self._rate = now.rate
+        return np.zeros(3), -self.loads * self.turns()
+
+    def after(self, step, rotation, acceleration):
+        """Let it follow."""
+        count = int(np.ceil(step / self.FINE - 1e-9))
+        for _ in range(count):
+            self._turning = self._turning + step / count * self.turns()
+            self._behind = self._behind + step / count * (self._rate - self._turning)
+
+
 class Entrained(Coupled):
     """
     Inertia that the body drags along through friction, as liquid in a tank or a loose harness.

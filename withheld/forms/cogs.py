@@ -4,10 +4,10 @@
 
 import numpy as np
 
-from withheld.forms.body import Coupled
+from withheld.forms.body import HeldBehind
 
 
-class SwitchedOff(Coupled):
+class SwitchedOff(HeldBehind):
     """
     A camera on a stabiliser without power, held by the magnets of its motors and a flat cable.
 
@@ -22,23 +22,7 @@ class SwitchedOff(Coupled):
     CABLE = 2.0 * np.pi * 0.6               # rad/s, without the notches
     FINE = 0.0025       # s, the steps
 
-    def begin(self, rng):
-        """Start at rest in a notch."""
-        self._behind, self._turning, self._rate = np.zeros(3), np.zeros(3), np.zeros(3)
-
-    def wrench(self, now):
-        """Return the moment that takes it along."""
-        self._rate = now.rate
-        return np.zeros(3), -self.loads * self._turns()
-
-    def after(self, step, rotation, acceleration):
-        """Let it follow."""
-        count = int(np.ceil(step / self.FINE - 1e-9))
-        for _ in range(count):
-            self._turning = self._turning + step / count * self._turns()
-            self._behind = self._behind + step / count * (self._rate - self._turning)
-
-    def _turns(self):
+    def turns(self):
         """Return the slope (3,) of the camera's rate, rad/s^2."""
         notch = self.FREQUENCY ** 2 / self.NOTCHES * np.sin(self.NOTCHES * self._behind)
         damper = 2.0 * self.DAMPING * self.FREQUENCY * (self._rate - self._turning)

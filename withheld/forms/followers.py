@@ -4,10 +4,10 @@
 
 import numpy as np
 
-from withheld.forms.body import Coupled
+from withheld.forms.body import HeldBehind
 
 
-class FollowsAll(Coupled):
+class FollowsAll(HeldBehind):
     """
     A heavy camera for the pilot on a stabiliser that follows the body about all three axes.
 
@@ -19,25 +19,8 @@ class FollowsAll(Coupled):
     """
 
     FREQUENCY, DAMPING = 2.0 * np.pi * 2.0, 0.6     # rad/s; of the critical one
-    FINE = 0.005        # s, the steps
 
-    def begin(self, rng):
-        """Start at rest, looking ahead."""
-        self._behind, self._looks, self._rate = np.zeros(3), np.zeros(3), np.zeros(3)
-
-    def wrench(self, now):
-        """Return the moment that the motors leave to the body."""
-        self._rate = now.rate
-        return np.zeros(3), -self.loads * self._turns()
-
-    def after(self, step, rotation, acceleration):
-        """Let it follow."""
-        count = int(np.ceil(step / self.FINE - 1e-9))
-        for _ in range(count):
-            self._looks = self._looks + step / count * self._turns()
-            self._behind = self._behind + step / count * (self._rate - self._looks)
-
-    def _turns(self):
+    def turns(self):
         """Return the slope (3,) of the camera's rate, rad/s^2."""
         return self.FREQUENCY * (
-            self.FREQUENCY * self._behind - 2.0 * self.DAMPING * self._looks)
+            self.FREQUENCY * self._behind - 2.0 * self.DAMPING * self._turning)

@@ -119,7 +119,7 @@ def test_a_camera_that_follows_takes_up_its_momentum_and_hardly_swings():
     # By the theory of an oscillator of the second order: how far it overshoots.
     over = np.exp(-np.pi * part.DAMPING / np.sqrt(1.0 - part.DAMPING ** 2))
     assert share.max() - 1.0 == pytest.approx(over, rel=0.05)
-    assert part._looks == pytest.approx(rate)
+    assert part._turning == pytest.approx(rate)
     assert part._behind == pytest.approx(2.0 * part.DAMPING / part.FREQUENCY * rate)
     assert part.wrench(still(rate=rate))[1] == pytest.approx(REST, abs=1e-9)
 
