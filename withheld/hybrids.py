@@ -212,16 +212,18 @@ def judge(label, base, found):
 
     named: the verdict has the effect, or one of its twins; gained: it has, and that of the base
     has not; moved: whether each of its parameters moved by the amount, within the interval of the
-    two, or None where one of the two does not state it; lost: what the base names and this verdict
-    does not; added: what else it names. right: it is named and did not move by another amount,
-    and nothing is lost or added; None where the base names it too and its amounts are not stated.
+    two, or None where one of the two does not state it, as another form does not; lost: what the
+    base names and this verdict does not; added: what else it names. right: it is named and did not
+    move by another amount, and nothing is lost or added; None where the base names it too and its
+    amounts are not stated.
 
     Args: label of make_hybrids; base, found: diagnoses as formats.md has them.
     """
     [(effect, amounts)] = label['effects'].items()
     names = {effect, *label['twins']}
     before, after = set(base['verdict']), set(found['verdict'])
-    moved = [_moved(label['by'], amount, *(_value(one, effect, parameter)
+    moved = [None if _in_another_form(base, effect, parameter) else
+             _moved(label['by'], amount, *(_value(one, effect, parameter)
                                            for one in (base, found)))
              for parameter, amount in amounts.items()]
     known = [one for one in moved if one is not None]
@@ -240,6 +242,12 @@ def _value(found, effect, parameter):
         if row['effect'] == effect and one:
             return one['value'], one['std']
     return None
+
+
+def _in_another_form(found, effect, parameter):
+    """Return whether a diagnosis states an effect by other parameters than this one."""
+    return any(row['effect'] == effect and row['parameters']
+               and parameter not in row['parameters'] for row in found['ranking'])
 
 
 def _moved(by, amount, before, after):

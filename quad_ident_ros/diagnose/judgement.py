@@ -94,8 +94,9 @@ def judge(bench: Bench) -> Judgement:
                                form_error_beside(model.effects, removed, rules))]
         if not idle:
             break
-        # Where either of two does and their gaps hardly differ, the likelihood decides.
-        first = max(idle, key=lambda removed: (len(removed), -smaller[removed].estimate.cost))
+        # The fewest first: of two that stand in for one another, one stays. Where either does and
+        # their gaps hardly differ, the likelihood decides.
+        first = min(idle, key=lambda removed: (len(removed), smaller[removed].estimate.cost))
         model = smaller[first]
     # Where forms gave way to the usual ones, these stand for their effects.
     there = {cause.effect: cause for cause in (*full.effects, *model.effects)}
@@ -111,12 +112,7 @@ def judge(bench: Bench) -> Judgement:
     if set(model.effects) <= set(absent) and closes_half(rest.gap, before, noise, rules):
         model = _fewest(bench, rest, before, noise, present)
         absent = tuple(cause for cause in absent if cause not in model.effects)
-    # What needs values that no vehicle has does the work of something else, which it stands for.
-    by_commands = bench.by_commands(model)
-    stand_ins = tuple(cause for cause in model.effects
-                      if cause not in absent and bench.stands_in(model, cause, by_commands))
-    present |= {cause.effect: rules.prior_of(cause.effect) for cause in stand_ins}
-    material = tuple(cause for cause in model.effects if cause not in {*absent, *stand_ins})
+    material = tuple(cause for cause in model.effects if cause not in absent)
     if set(model.effects) <= set(full.effects):
         improbable = in_any_form(full.effects, absent)
         final = full if not improbable else bench.absent(full, improbable)
@@ -133,6 +129,16 @@ def judge(bench: Bench) -> Judgement:
         final = bench.absent(final, in_any_form(final.effects, (gone,)))
         material = tuple(cause for cause in material if cause is not gone)
         present[gone.effect] = rules.prior_of(gone.effect)
+    # What needs values that no vehicle has does the work of something else, which it stands for:
+    # in the model that is reported, or without the effects that do not matter.
+    by_commands = bench.by_commands(final)
+    held = {cause.effect for one, ranges in ((final, by_commands),
+                                             (model, bench.by_commands(model)))
+            for cause in one.effects if bench.stands_in(one, cause, ranges)}
+    named = in_forms_of(final.effects, material)
+    stand_ins = tuple(cause for cause in named if cause.effect in held)
+    present |= {cause.effect: rules.prior_of(cause.effect) for cause in stand_ins}
+    material = tuple(cause for cause in named if cause not in stand_ins)
     if doubtful:
         # Without an effect that stood for them, more of what remains is by errors of the commands.
         bench = replace(bench, noise=noise_of(final.estimate, bench.flights, bench.vehicle, rules,
@@ -143,8 +149,7 @@ def judge(bench: Bench) -> Judgement:
     fitted, final = final, bench.without_gusts(final)
     without = {cause: bench.without_gusts(one) for cause, one in without.items()}
     ends = _nominal_ends(bench, final)
-    return Judgement(final, in_forms_of(final.effects, material),
-                     in_forms_of(final.effects, stand_ins), fitted, by_commands,
+    return Judgement(final, material, stand_ins, fitted, by_commands,
                      _by_form(final, supports), present, _by_form(final, without),
                      ends, bench.left_out(fitted), noises, noise_gaps,
                      remaining(final.gap, noise, rules),

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from quad_ident_ros.diagnose.candidates import Candidate, nuisance_candidates, usual_forms
+from quad_ident_ros.diagnose.cross_validation import left_out_cost
 from quad_ident_ros.diagnose.discrepancy import AXES, log_likelihood, scales
 from quad_ident_ros.diagnose.evidence import beam, excludes, key_of, Quadratic
 from quad_ident_ros.diagnose.fitted import (
@@ -69,9 +70,9 @@ def select(flights: list[Flight], vehicle: Vehicle, causes: tuple[Candidate, ...
     """
     search = _searched(_Search(flights, vehicle, causes, rules, gusty=gusty),
                        lambda share: on_progress(ONCE * share))
-    if inertial(flights) and search.too_wide((largest := search.largest())[1]):
-        # What the nominal vehicle leaves, with which the search began, hid the effects as noise.
-        search = _searched(_Search(flights, vehicle, causes, rules, start=largest),
+    if search.by_residuals and search.too_wide((largest := search.largest())[1]):
+        # What the search had not found yet hid the rest as noise.
+        search = _searched(_Search(flights, vehicle, causes, rules, gusty=gusty, start=largest),
                            lambda share: on_progress(ONCE))
     alike = search.alike_in_nuisances()
     if alike:
@@ -107,6 +108,8 @@ def _searched(search: '_Search', on_progress: Callable[[float], None]) -> '_Sear
 class _Search:
     """Sets of candidates that were fitted, and the best of them."""
 
+    slow: np.ndarray | None
+    by_residuals: bool          # whether the noise is what a set leaves, not that of samples
     tried: dict[tuple, Estimate]
     best: Fitted | None
     judged: dict[tuple, Fitted]
@@ -124,13 +127,13 @@ class _Search:
         self.noise = [quick_noise(errors_along(flight, vehicle, nominal(vehicle),
                                                flight.states[flight.first]))
                       for flight in flights]
-        self.slow: np.ndarray | None = None
+        # Integrals change little from sample to sample, whatever their errors are.
+        self.slow = trim_wrench(vehicle) if inertial(flights) else None
+        self.by_residuals = inertial(flights) or start is not None
+        if self.by_residuals:
+            self.noise = self.whole_noise(start[1] if start else self.nothing(self.noise))
         self.tried = {}
         self.first: tuple = ()
-        if inertial(flights):
-            # Integrals change little from sample to sample, whatever their errors are.
-            self.slow = trim_wrench(vehicle)
-            self.noise = self.whole_noise(start[1] if start else self.nothing(self.noise))
         if start:
             self.first, fit = start
             self.tried[self.first] = refitted(flights, vehicle, fit.z, self.first, self.noise,
@@ -193,7 +196,7 @@ class _Search:
         ratio = np.median(np.array(noise) / self.noise, axis=0)
         if max(np.max(ratio), np.max(1.0 / ratio)) <= self.rules.coloured and not changed:
             return False
-        self.slow = slow
+        self.slow, self.by_residuals = slow, True
         plain = self.simplest([key for key in self.tried if _plain(key)])
         known = [self.best.chosen, *(one.chosen for one in self.order()[:REFITS]), plain.chosen,
                  ()]
@@ -399,12 +402,14 @@ class _Search:
         self.judged = {key: one for key, one in self.judged.items() if key in self.tried}
         # The usual forms in its place may do less than other sets that were fitted.
         self.best = self.simplest(list(self.tried))
-        # More parameters are for what the fewer leave, not for a little of the noise. That is a
-        # choice among forms; between effects the evidence decides where the parameters show.
+        # More parameters are for what the fewer leave, not for a little of the noise, and have to
+        # predict. That is a choice among forms; between effects the evidence decides where the
+        # parameters show.
         plain = self.simplest([key for key in self.tried if _plain(key)])
-        if plain.estimate.cost < (1.0 + self.rules.worth) * self.best.estimate.cost:
+        cheap = plain.estimate.cost < (1.0 + self.rules.worth) * self.best.estimate.cost
+        if cheap or self.predicts_better(plain, self.best):
             told = self.simplest([key for key in self.tried if self.shows(key)])
-            keeps = _plain if _names(plain) <= _names(told) else self.shows
+            keeps = _plain if not cheap or _names(plain) <= _names(told) else self.shows
             self.judged = {key: one for key, one in self.judged.items() if keeps(key)}
             self.ranked = [one for one in self.ranked if keeps is not _plain or _plain(one[1])]
             self.best = plain if keeps is _plain else told
@@ -424,6 +429,14 @@ class _Search:
                 del self.tried[one.chosen], self.judged[one.chosen]
             else:
                 self.best = max(self.best, one, key=lambda each: each.evidence)
+
+    def predicts_better(self, one: Fitted, other: Fitted) -> bool:
+        """Return whether a set predicts flights by the others better, which one alone hides."""
+        if one is other or len(self.flights) == 1:
+            return False
+        costs = [left_out_cost(each, self.flights, self.vehicle, self.noise, self.slow)
+                 for each in (one, other)]
+        return costs[0] < costs[1]
 
     def share_alike(self) -> None:
         """

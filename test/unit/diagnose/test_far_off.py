@@ -23,6 +23,7 @@ from quad_ident_ros.diagnose.intake import take_in
 from quad_ident_ros.diagnose.rules import RULES
 from quad_ident_ros.diagnose.select import select
 from quad_ident_ros.greybox.noise import whole_noise
+from quad_ident_ros.greybox.parameters import INDEX
 from quad_ident_ros.model.vehicle import load_vehicle
 
 pytestmark = [needs_real_flights, pytest.mark.slow, pytest.mark.xdist_group('far_off')]
@@ -99,3 +100,26 @@ def test_what_the_nominal_vehicle_leaves_hides_no_motors_as_noise():
     found = diagnose([part], vehicle)
     assert 'motor_lag' in found.verdict
     assert found.gap.after['velocity'] < 0.8 * found.gap.before['velocity']
+
+
+def test_a_search_that_is_lost_goes_on_from_all_that_may_be_there():
+    """
+    Seen from a frame that moves, no law changes: a wind comes in, and the drag stays.
+
+    Where the flights begin, a wind does most of what the drag does, and what these leave hid the
+    rest as noise.
+    """
+    wind, vehicle = (0.8, -0.8), real_vehicle()
+    flights = []
+    for flight in (whole_real_flight(name) for name in (*TRAINING[:2], HELD_OUT[0])):
+        since, columns = flight.t - flight.t[0], dict(flight.columns)
+        for axis, speed in zip('xy', wind, strict=True):
+            columns[f'p{axis}'] = columns[f'p{axis}'] + speed * since
+            columns[f'v{axis}'] = columns[f'v{axis}'] + speed
+        flights.append(replace(flight, columns=columns))
+    flights = take_in(flights, vehicle, None, RULES).flights
+    usual = tuple(one for one in candidates(flights, vehicle, RULES) if one.usual)
+    best = select(flights, vehicle, usual, RULES).best
+    assert {'rotor_drag', 'wind', 'battery_sag'} <= {cause.effect for cause in best.causes}
+    blown = best.estimate.z[[INDEX['wind.x'], INDEX['wind.y']]]
+    assert blown == pytest.approx(wind, abs=0.3)

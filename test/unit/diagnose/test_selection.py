@@ -78,7 +78,8 @@ def searched(costs, evidence):
     search = object.__new__(_Search)
     search.all_causes = tuple(dict.fromkeys(cause for key in costs for cause in key))
     search.rules, search.ranked, search.judged = RULES, [], {}
-    search.flights = search.vehicle = search.noise = search.slow = None
+    search.flights = [None]     # one alone is not left out
+    search.vehicle = search.noise = search.slow = None
     search.linearised_at, search.judged_around = (), {}
     search.quadratic = SimpleNamespace(scatter=1.0)
     search.tried = {key: SimpleNamespace(cost=cost, z=None) for key, cost in costs.items()}
@@ -369,3 +370,21 @@ def test_a_search_stands_at_no_set_twice(monkeypatch):
     monkeypatch.setattr(search, 'stand_at', told)
     search.look_among(tuple(cause for cause in causes if cause.usual), lambda share: None)
     assert 2 <= len(stood) == len(set(stood))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(('truth', 'plain_predicts'), [
+    ({'factor': 0.85}, True), ({'hover_factor': 0.85, 'exponent': 2.6}, False)])
+def test_more_parameters_have_to_predict_flights_that_they_were_not_fitted_to(
+        truth, plain_predicts):
+    vehicle = load_vehicle('hummingbird')
+    records = [fly_closed_loop(vehicle, {'thrust_scale': truth}, path, duration=10.0,
+                               seed=seed, noise=SENSORS['mocap_imu'])
+               for seed, path in enumerate(('lissajous', 'figure8'))]
+    search = search_among(records, vehicle, ['thrust_scale'], [])
+    search.look_among(search.all_causes, lambda share: None)
+    plain, curved = ({one.chosen[0].form: one for one in search.judged.values()
+                      if len(one.chosen) == 1}[name] for name in ('factor', 'curve'))
+    assert search.predicts_better(plain, curved) is plain_predicts
+    assert search.predicts_better(curved, plain) is not plain_predicts
+    assert not search.predicts_better(plain, plain)

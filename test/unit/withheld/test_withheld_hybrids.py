@@ -141,6 +141,14 @@ def test_factors_are_multiplied_and_twins_count():
     assert hybrids.judge(truth, base, other)['moved'] is None
 
 
+def test_what_the_base_states_in_another_form_is_not_compared():
+    truth = label(hybrids.weaker(0.9))
+    base = diagnosis(['thrust_scale'], thrust_scale={'at_hover': (0.95, 0.002)})
+    found = diagnosis(['thrust_scale'], thrust_scale={'factor': (0.855, 0.002)})
+    told = hybrids.judge(truth, base, found)
+    assert told['moved'] is None and told['right'] is None
+
+
 @pytest.mark.slow
 def test_all_cases_are_written_and_no_two_alike(tmp_path):
     source = tmp_path / 'source'
