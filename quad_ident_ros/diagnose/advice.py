@@ -7,9 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from quad_ident_ros.diagnose import fly_next as design
-from quad_ident_ros.diagnose.candidates import SCALES, unobservable
+from quad_ident_ros.diagnose.bench import Model
+from quad_ident_ros.diagnose.candidates import Candidate, SCALES, unobservable
 from quad_ident_ros.diagnose.fitted import columns_at_bounds
-from quad_ident_ros.diagnose.judgement import Judgement
+from quad_ident_ros.diagnose.judgement import in_forms_of, Judgement
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.diagnose.selection import Selection
 from quad_ident_ros.diagnose.verdict import Verdict
@@ -50,12 +51,12 @@ def fly_next(selection: Selection, flights: list, vehicle: Vehicle, z: np.ndarra
 
 def at_bounds(judged: Judgement, vehicle: Vehicle, rules: Rules) -> tuple[dict, ...]:
     """Return warnings on parameters of a model that end at bounds, as data of findings."""
-    rows, z = [], judged.model.z
+    rows = []
     for cause in judged.model.effects:
-        held = {PARAMETERS[column - SPLIT][1]: z[column]
-                for column in columns_at_bounds(cause, z, vehicle, rules)}
-        names = [f'{one.name} {value:.3g}{"" if one.unit == "1" else f" {one.unit}"}'
-                 for one, value in held.items()]
+        names, of = _values_at_bounds(judged.model, cause, vehicle, rules), ''
+        if not names and cause in judged.stand_ins:
+            names = _values_at_bounds(judged.essential, cause, vehicle, rules)
+            of = ', without the effects that do not matter,'
         so = ('; it stays in the model in its place and is not named'
               if cause in judged.stand_ins else '')
         if names:
@@ -67,11 +68,20 @@ def at_bounds(judged: Judgement, vehicle: Vehicle, rules: Rules) -> tuple[dict, 
             rows.append({
                 'flight': 'all flights', 'code': 'at_bound', 'severity': 'warning',
                 'where': cause.effect,
-                'message': f'{", ".join(names)} is the bound of what {whose}, and the best value '
-                           f'lies beyond it: the effect may stand in for another cause, such as '
-                           f'{such}{so}',
+                'message': f'{", ".join(names)}{of} is the bound of what {whose}, and the best '
+                           f'value lies beyond it: the effect may stand in for another cause, '
+                           f'such as {such}{so}',
                 'remedy': remedy})
     return tuple(rows)
+
+
+def _values_at_bounds(model: Model, cause: Candidate, vehicle: Vehicle, rules: Rules) -> list[str]:
+    """Return the parameters of an effect that end at bounds in a Model, in words."""
+    [cause] = in_forms_of(model.effects, [cause])
+    held = {PARAMETERS[column - SPLIT][1]: model.z[column]
+            for column in columns_at_bounds(cause, model.z, vehicle, rules)}
+    return [f'{one.name} {value:.3g}{"" if one.unit == "1" else f" {one.unit}"}'
+            for one, value in held.items()]
 
 
 def by_input_errors(judged: Judgement, command_errors: bool) -> tuple[dict, ...]:

@@ -18,8 +18,9 @@ def left_out_cost(fitted: Fitted, flights: Sequence[Flight], vehicle: Vehicle,
     """
     Return the cost of all flights, each by what a set that is refitted to the others says of it.
 
-    In a flight that is left out only its nuisances are free. Two flights or more. Source: Stone,
-    J. R. Stat. Soc. B 36, 1974. Args: noise: per flight (12,); slow as of refitted.
+    In a flight that is left out its nuisances and the initial states of its rollouts are free. inf
+    where a prediction diverges. Two flights or more. Source: Stone, J. R. Stat. Soc. B 36, 1974.
+    Args: noise: per flight (12,); slow as of refitted.
     """
     fit, everyone = fitted.estimate, range(len(flights))
 
@@ -31,4 +32,5 @@ def left_out_cost(fitted: Fitted, flights: Sequence[Flight], vehicle: Vehicle,
     own = tuple(cause for cause in fitted.chosen if cause.nuisance)
     others = [estimate_of([n for n in everyone if n != k], fitted.chosen, fit.z).z
               for k in everyone]
-    return sum(estimate_of([k], own, z).cost for k, z in zip(everyone, others, strict=True))
+    total = sum(estimate_of([k], own, z).cost for k, z in zip(everyone, others, strict=True))
+    return total if np.isfinite(total) else np.inf

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What each effect contributes, which effects matter, and whether something unknown remains."""
 
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
 from itertools import combinations
 
@@ -18,7 +18,7 @@ from quad_ident_ros.diagnose.probability import beside_others, presence, probabi
 from quad_ident_ros.diagnose.rules import Rules
 from quad_ident_ros.effects.registry import EFFECTS
 from quad_ident_ros.greybox.errors import ERRORS, GROUPS
-from quad_ident_ros.greybox.parameters import nominal
+from quad_ident_ros.greybox.parameters import NAMES, nominal
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,11 +28,12 @@ class Judgement:
 
     model: all effects that are present; material: those of them that matter; stand_ins: those that
     would, but have most of their parameters at bounds, or where errors of the commands may have
-    put them; fitted: the same model with the gusts of each flight in its vectors, which `model`
-    and `without` leave out; by_commands {column: (least, most)}: where errors of the commands
-    alone may have put a parameter; supports {candidate: Support} and probability {effect: of
-    being present}; without {candidate: Model without it}; before: the Ends of the nominal vehicle
-    with the nuisances of each flight; left_out: those of each flight by the fitted model of the
+    put them, in the model or in `essential`, which the elimination left; fitted: the model with
+    the gusts of each flight in its vectors, which `model` and `without` leave out; by_commands
+    {column: (least, most)}: where errors of the commands alone may have put a parameter; supports
+    {candidate: Support} and probability {effect: of being present}; without {candidate: Model
+    without it}; before: the Ends of the nominal vehicle with the nuisances of each flight;
+    left_out: those of each flight by the fitted model of the
     others; noises: the Noise of each flight, noise: its {group: gap}; remaining: {group: gap
     beyond tolerance}; unexplained: those of them beyond the error of form that the effects named
     may have.
@@ -41,6 +42,7 @@ class Judgement:
     model: Model
     material: tuple
     stand_ins: tuple
+    essential: Model
     fitted: Model
     by_commands: dict[int, tuple[float, float]]
     supports: dict
@@ -67,37 +69,11 @@ def judge(bench: Bench) -> Judgement:
     those that are present all the same stay in the model.
     """
     best, rules = bench.selection.best, bench.rules
-    full = model = bench.model(best.chosen, best.estimate)
+    full = bench.model(best.chosen, best.estimate)
     noises = bench.noises(full)
     noise_gaps = bench.noise_gaps(full, noises)
     before, noise = gaps.gap(_nominal_ends(bench, full)), pooled(noise_gaps)
-    supports: dict[Candidate, Support] = {}
-    without: dict[Candidate, Model] = {}
-    while model.effects:
-        slopes = bench.slopes(model)
-        smaller = {removed: bench.without(model, removed, slopes)
-                   for removed in _subsets(model, rules)}
-        alone = {removed[0]: one for removed, one in smaller.items() if len(removed) == 1}
-        without |= alone
-        for cause, support in beside_others(
-                {cause: _support(model, one, before, noise,
-                                 min(bench.distance(model, (cause,)),
-                                     _by_instruments(bench, cause, one)), rules)
-                 for cause, one in alone.items()}, rules).items():
-            # Beside effects that do not matter it may show more clearly, or less.
-            supports[cause] = max(supports.get(cause, support), support,
-                                  key=lambda each: presence(each, rules))
-        idle = [removed for removed, one in smaller.items()
-                if not matters(model.gap, one.gap, before, noise, rules,
-                               clear({cause: supports[cause] for cause in removed},
-                                     bench.distance(model, removed), rules),
-                               form_error_beside(model.effects, removed, rules))]
-        if not idle:
-            break
-        # The fewest first: of two that stand in for one another, one stays. Where either does and
-        # their gaps hardly differ, the likelihood decides.
-        first = min(idle, key=lambda removed: (len(removed), smaller[removed].estimate.cost))
-        model = smaller[first]
+    model, supports, without = _eliminated(bench, full, before, noise)
     # Where forms gave way to the usual ones, these stand for their effects.
     there = {cause.effect: cause for cause in (*full.effects, *model.effects)}
     supports = {cause: support for cause, support in supports.items()
@@ -129,12 +105,7 @@ def judge(bench: Bench) -> Judgement:
         final = bench.absent(final, in_any_form(final.effects, (gone,)))
         material = tuple(cause for cause in material if cause is not gone)
         present[gone.effect] = rules.prior_of(gone.effect)
-    # What needs values that no vehicle has does the work of something else, which it stands for:
-    # in the model that is reported, or without the effects that do not matter.
-    by_commands = bench.by_commands(final)
-    held = {cause.effect for one, ranges in ((final, by_commands),
-                                             (model, bench.by_commands(model)))
-            for cause in one.effects if bench.stands_in(one, cause, ranges)}
+    held, by_commands = _held(bench, final, model)
     named = in_forms_of(final.effects, material)
     stand_ins = tuple(cause for cause in named if cause.effect in held)
     present |= {cause.effect: rules.prior_of(cause.effect) for cause in stand_ins}
@@ -149,11 +120,76 @@ def judge(bench: Bench) -> Judgement:
     fitted, final = final, bench.without_gusts(final)
     without = {cause: bench.without_gusts(one) for cause, one in without.items()}
     ends = _nominal_ends(bench, final)
-    return Judgement(final, material, stand_ins, fitted, by_commands,
+    return Judgement(final, material, stand_ins, model, fitted, by_commands,
                      _by_form(final, supports), present, _by_form(final, without),
                      ends, bench.left_out(fitted), noises, noise_gaps,
                      remaining(final.gap, noise, rules),
                      unexplained(final.gap, gaps.gap(ends), noise, bool(material), rules))
+
+
+def _eliminated(bench: Bench, model: Model, before: dict, noise: dict
+                ) -> tuple[Model, dict[Candidate, Support], dict[Candidate, Model]]:
+    """
+    Return a Model less all effects without which nothing that matters is lost.
+
+    Beside it the Support of each effect in the round in which it is most probable, and the Model
+    without it of the last round.
+    """
+    rules = bench.rules
+    supports: dict[Candidate, Support] = {}
+    without: dict[Candidate, Model] = {}
+    while model.effects:
+        slopes = bench.slopes(model)
+        alone = {cause: bench.without(model, (cause,), slopes) for cause in model.effects}
+        without |= alone
+        for cause, support in beside_others(
+                {cause: _support(model, one, before, noise,
+                                 min(bench.distance(model, (cause,)),
+                                     _by_instruments(bench, cause, one)), rules)
+                 for cause, one in alone.items()}, rules).items():
+            # Beside effects that do not matter it may show more clearly, or less.
+            supports[cause] = max(supports.get(cause, support), support,
+                                  key=lambda each: presence(each, rules))
+        # The fewest first: of two that stand in for one another, one may stay.
+        smaller = {(cause,): one for cause, one in alone.items()}
+        idle = _idle_sets(bench, model, smaller, supports, before, noise)
+        if not idle:
+            smaller = {removed: bench.without(model, removed, slopes)
+                       for removed in _groups(model, rules)}
+            idle = _idle_sets(bench, model, smaller, supports, before, noise)
+        if not idle:
+            break
+        # Where either does and their gaps hardly differ, the likelihood decides.
+        first = min(idle, key=lambda removed: (len(removed), smaller[removed].estimate.cost))
+        model = smaller[first]
+    return model, supports, without
+
+
+def _held(bench: Bench, final: Model, essential: Model) -> tuple[set[str], dict]:
+    """
+    Return the effects that stand in for something else, and the ranges by errors of the commands.
+
+    What needs values that no vehicle has does the work of something else, in the Model that is
+    reported or in that without the effects that do not matter.
+    """
+    ranges = bench.by_commands(essential)
+    held = {cause.effect for cause in essential.effects
+            if bench.stands_in(essential, cause, ranges)}
+    ranges = bench.by_commands(final) | {column: ends for column, ends in ranges.items()
+                                         if NAMES[column].split('.')[0] in held}
+    return held | {cause.effect for cause in final.effects
+                   if bench.stands_in(final, cause, ranges)}, ranges
+
+
+def _idle_sets(bench: Bench, model: Model, smaller: Mapping[tuple, Model], supports: dict,
+               before: dict, noise: dict) -> list:
+    """Return the sets of effects without which a Model, as in {set: Model}, loses nothing."""
+    rules = bench.rules
+    return [removed for removed, one in smaller.items()
+            if not matters(model.gap, one.gap, before, noise, rules,
+                           clear({cause: supports[cause] for cause in removed},
+                                 bench.distance(model, removed), rules),
+                           form_error_beside(model.effects, removed, rules))]
 
 
 def _by_instruments(bench: Bench, cause: Candidate, without: Model) -> float:
@@ -361,12 +397,12 @@ def beyond(gap: float, noise: float) -> float:
     return float(np.sqrt(max(0.0, gap ** 2 - noise ** 2)))
 
 
-def _subsets(model: Model, rules: Rules) -> list:
-    """Return the effects that are taken out: each one, and those together that may cancel."""
+def _groups(model: Model, rules: Rules) -> list:
+    """Return the effects that are taken out together: those that may cancel."""
     effects = model.effects
     scaling = [cause for cause in effects if EFFECTS[cause.effect].scale_group]
     groups = [tuple(group) for size in range(2, len(scaling) + 1)
               for group in combinations(scaling, size)]
     pairs = [pair for pair in combinations(effects, 2)
              if pair not in groups and tie(model.estimate, *pair) > rules.tied]
-    return [*((cause,) for cause in effects), *groups, *pairs]
+    return [*groups, *pairs]

@@ -53,7 +53,7 @@ FAR = 30.0          # log evidence behind the best one up to which a set that ha
 TURNS = 2           # times that flights are linearised again for delays and lags of the best set
 REFITTED = 2        # times that the largest set is fitted, each by the noise of the fit before
 PASSES = 3          # times, at most, in each stage, that the noise is estimated again
-ONCE = 0.8          # share of the progress for the first search: a second one is rare
+ONCE = 0.8          # share of the progress for a first search: a second one is seldom needed
 LOST = 4.0          # times the scatter that a fit may cost more than a subset does
 
 
@@ -65,21 +65,33 @@ def select(flights: list[Flight], vehicle: Vehicle, causes: tuple[Candidate, ...
 
     The errors are weighed by the noise from sample to sample. Where the residuals are much larger,
     by autocorrelated noise or by what no effect explains, their own size is the weight, until
-    the two agree. A moment that the best set has by flight although all flights have it alike is
-    the vehicle's: the search is repeated with moments that only differ.
+    the two agree; where that is much more than the largest set leaves, the search is repeated from
+    that set. A moment that the best set has by flight although all flights have it alike is the
+    vehicle's: the search is repeated with moments that only differ.
     """
-    search = _searched(_Search(flights, vehicle, causes, rules, gusty=gusty),
+    search = _found(flights, vehicle, causes, rules, (), gusty,
+                    lambda share: on_progress(ONCE * share))
+    alike = search.alike_in_nuisances()
+    if alike:
+        search = _found(flights, vehicle, causes, rules, alike, gusty,
+                        lambda share: on_progress(ONCE + (1.0 - ONCE) * share))
+    on_progress(1.0)
+    return search.selection()
+
+
+def _found(flights: list[Flight], vehicle: Vehicle, causes: tuple[Candidate, ...], rules: Rules,
+           differ: Collection[str], gusty: bool, on_progress: Callable[[float], None]
+           ) -> '_Search':
+    """Return a search that has come to its end, the second one where the first hid effects."""
+    search = _searched(_Search(flights, vehicle, causes, rules, differ, gusty),
                        lambda share: on_progress(ONCE * share))
     if search.by_residuals and search.too_wide((largest := search.largest())[1]):
         # What the search had not found yet hid the rest as noise.
-        search = _searched(_Search(flights, vehicle, causes, rules, gusty=gusty, start=largest),
-                           lambda share: on_progress(ONCE))
-    alike = search.alike_in_nuisances()
-    if alike:
-        search = _searched(_Search(flights, vehicle, causes, rules, alike, gusty),
+        del search      # two frames at once would be most of a diagnosis' memory
+        search = _searched(_Search(flights, vehicle, causes, rules, differ, gusty, largest),
                            lambda share: on_progress(ONCE + (1.0 - ONCE) * share))
     on_progress(1.0)
-    return search.selection()
+    return search
 
 
 def _searched(search: '_Search', on_progress: Callable[[float], None]) -> '_Search':
@@ -149,11 +161,16 @@ class _Search:
                         iterations=2, slow=self.slow)
 
     def largest(self) -> tuple[tuple, Estimate]:
-        """Return a set of as many usual forms as go together, and its Estimate."""
+        """
+        Return a set of as many usual forms as go together, and its Estimate.
+
+        Its nuisances are those of the best set: what flights differ by is no noise.
+        """
         assert self.best is not None
         chosen: tuple = ()
-        for cause in self.all_causes:
-            if cause.usual and not any(excludes(cause, other) for other in chosen):
+        usual = (cause for cause in self.all_causes if cause.usual)
+        for cause in (*usual, *(one for one in self.best.chosen if one.nuisance)):
+            if not any(excludes(cause, other) for other in chosen):
                 chosen = key_of((*chosen, cause))
         z, size = nominal(self.vehicle), limits(self.vehicle)[2]
         # Slopes at no lag hardly show what a lag does: see other_actuators.
@@ -169,7 +186,7 @@ class _Search:
 
     def too_wide(self, largest: Estimate) -> bool:
         """
-        Return whether the Estimate of the largest set leaves much less than the noise here.
+        Return whether the largest set, by its Estimate, leaves much less than the noise assumed.
 
         The noise is what the largest model leaves (Mallows, Technometrics 15, 1973).
         """
@@ -402,9 +419,9 @@ class _Search:
         self.judged = {key: one for key, one in self.judged.items() if key in self.tried}
         # The usual forms in its place may do less than other sets that were fitted.
         self.best = self.simplest(list(self.tried))
-        # More parameters are for what the fewer leave, not for a little of the noise, and have to
-        # predict. That is a choice among forms; between effects the evidence decides where the
-        # parameters show.
+        # More parameters are for what the fewer leave, not for a little of the noise. That is a
+        # choice among forms; between effects the evidence decides where the parameters show,
+        # unless left-out flights are clearly predicted better without them.
         plain = self.simplest([key for key in self.tried if _plain(key)])
         cheap = plain.estimate.cost < (1.0 + self.rules.worth) * self.best.estimate.cost
         if cheap or self.predicts_better(plain, self.best):
@@ -431,12 +448,16 @@ class _Search:
                 self.best = max(self.best, one, key=lambda each: each.evidence)
 
     def predicts_better(self, one: Fitted, other: Fitted) -> bool:
-        """Return whether a set predicts flights by the others better, which one alone hides."""
+        """
+        Return whether a set predicts left-out flights clearly better than another one.
+
+        By more than sets that are about as good differ by. False for a single flight.
+        """
         if one is other or len(self.flights) == 1:
             return False
         costs = [left_out_cost(each, self.flights, self.vehicle, self.noise, self.slow)
                  for each in (one, other)]
-        return costs[0] < costs[1]
+        return costs[0] + 2.0 * self.quadratic.scatter * self.rules.alike < costs[1]
 
     def share_alike(self) -> None:
         """

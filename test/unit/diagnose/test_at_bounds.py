@@ -40,6 +40,16 @@ def test_a_parameter_at_its_bound_is_named_with_its_value():
     assert 'factor_y' not in one['message']
 
 
+def test_what_stands_in_before_minor_effects_come_back_says_where_it_ended():
+    z, held = nominal(VEHICLE), nominal(VEHICLE)
+    z[[*COLUMNS]], held[[*COLUMNS]] = 1.4, limits(VEHICLE)[1, [*COLUMNS]]
+    reported, essential = (SimpleNamespace(effects=(INERTIA,), z=one) for one in (z, held))
+    [one] = at_bounds(SimpleNamespace(model=reported, essential=essential, stand_ins=(INERTIA,)),
+                      VEHICLE, RULES)
+    assert 'without the effects that do not matter' in one['message']
+    assert one['message'].endswith('is not named')
+
+
 @pytest.mark.parametrize('values', [{}, {'factor_x': 1.3}])
 def test_parameters_inside_their_bounds_or_without_an_effect_are_not(values):
     assert told(**values) == ()

@@ -8,18 +8,21 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from quad_ident_ros.diagnose import judgement
 from quad_ident_ros.diagnose.bench import Bench, given, standard_errors_from_none
 from quad_ident_ros.diagnose.candidates import Candidate, candidates
 from quad_ident_ros.diagnose.diagnosis import diagnose
 from quad_ident_ros.diagnose.gap import Ends, gap
 from quad_ident_ros.diagnose.intake import take_in
 from quad_ident_ros.diagnose.judgement import (
+    _eliminated,
     _fewest,
     _idle,
     _support,
     beyond,
     clear,
     closes_half,
+    explained_share,
     form_error_beside,
     in_any_form,
     in_forms_of,
@@ -382,6 +385,38 @@ def test_what_loses_nothing_in_the_model_that_is_reported_does_not_matter(drag, 
     supports = dict.fromkeys(causes, Support(0.5, 5.0, 0.9, {}, 3.0))
     idle = _idle(bench, model, causes, supports, of(velocity=0.8), NOISE)
     assert (idle and idle.effect) == expected
+
+
+@pytest.mark.parametrize(('distance', 'stay'), [
+    (20.0, ['attitude_misalignment']),      # either does, and without the wind costs less
+    (0.5, [])])         # neither clearly differs from none: the drag may be wrong by as much
+def test_of_two_that_stand_in_for_one_another_one_stays(monkeypatch, distance, stay):
+    """Together they close less than the error of form of others may be, but one is clear."""
+    drag, wind, tilt = causes = tuple(Named(effect=name, columns=()) for name in (
+        'rotor_drag', 'wind', 'attitude_misalignment'))
+    costs = {wind: 10.0, tilt: 20.0, drag: 900.0}
+
+    def model(effects):
+        velocity = (0.04 if {wind, tilt} & set(effects) else 0.12) if drag in effects else 0.7
+        cost = sum(costs[one] for one in causes if one not in effects)
+        return SimpleNamespace(effects=effects, gap=of(velocity=velocity),
+                               estimate=SimpleNamespace(cost=cost))
+
+    def support(model, without, before, noise, distance, rules):
+        share = lost_shares(model.gap, without.gap, before, noise, rules)['velocity']
+        explained = explained_share(model.gap['velocity'], without.gap['velocity'],
+                                    noise['velocity'], 0.01)
+        return Support(share, 5.0, explained, without.gap, distance)
+
+    bench = SimpleNamespace(
+        slopes=lambda _: None, rules=RULES, distance=lambda *_: distance,
+        without=lambda model_, removed, _: model(tuple(
+            one for one in model_.effects if one not in removed)))
+    monkeypatch.setattr(judgement, '_support', support)
+    monkeypatch.setattr(judgement, '_by_instruments', lambda *_: np.inf)
+    monkeypatch.setattr(judgement, 'tie', lambda *_: 1.0)
+    left, _, _ = _eliminated(bench, model(causes), of(velocity=0.8), NOISE)
+    assert [one.effect for one in left.effects] == ['rotor_drag', *stay]
 
 
 def test_one_block_of_time_has_no_standard_error():
