@@ -69,20 +69,20 @@ def select(flights: list[Flight], vehicle: Vehicle, causes: tuple[Candidate, ...
     that set. A moment that the best set has by flight although all flights have it alike is the
     vehicle's: the search is repeated with moments that only differ.
     """
-    search = _found(flights, vehicle, causes, rules, (), gusty,
-                    lambda share: on_progress(ONCE * share))
+    search = _final_search(flights, vehicle, causes, rules, (), gusty,
+                           lambda share: on_progress(ONCE * share))
     alike = search.alike_in_nuisances()
     if alike:
-        search = _found(flights, vehicle, causes, rules, alike, gusty,
-                        lambda share: on_progress(ONCE + (1.0 - ONCE) * share))
+        search = _final_search(flights, vehicle, causes, rules, alike, gusty,
+                               lambda share: on_progress(ONCE + (1.0 - ONCE) * share))
     on_progress(1.0)
     return search.selection()
 
 
-def _found(flights: list[Flight], vehicle: Vehicle, causes: tuple[Candidate, ...], rules: Rules,
-           differ: Collection[str], gusty: bool, on_progress: Callable[[float], None]
-           ) -> '_Search':
-    """Return a search that has come to its end, the second one where the first hid effects."""
+def _final_search(flights: list[Flight], vehicle: Vehicle, causes: tuple[Candidate, ...],
+                  rules: Rules, differ: Collection[str], gusty: bool,
+                  on_progress: Callable[[float], None]) -> '_Search':
+    """Return a search at its end: a second one where the first took effects for noise."""
     search = _searched(_Search(flights, vehicle, causes, rules, differ, gusty),
                        lambda share: on_progress(ONCE * share))
     if search.by_residuals and search.too_wide((largest := search.largest())[1]):
