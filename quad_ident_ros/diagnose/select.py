@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which effects explain flights: sets of candidates compared jointly, each refitted."""
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
+from types import MappingProxyType
 
 import numpy as np
 
@@ -65,8 +66,8 @@ def select(flights: list[Flight], vehicle: Vehicle, causes: tuple[Candidate, ...
 
     The errors are weighed by the noise from sample to sample. Where the residuals are much larger,
     by autocorrelated noise or by what no effect explains, their own size is the weight, until
-    the two agree; where that is much more than the largest set leaves, the search is repeated from
-    that set. A moment that the best set has by flight although all flights have it alike is the
+    the two agree; where that is much more than the largest set leaves, the search is repeated with
+    what that leaves. A moment that the best set has by flight although all flights have it alike is the
     vehicle's: the search is repeated with moments that only differ.
     """
     search = _final_search(flights, vehicle, causes, rules, (), gusty,
@@ -86,9 +87,13 @@ def _final_search(flights: list[Flight], vehicle: Vehicle, causes: tuple[Candida
     search = _searched(_Search(flights, vehicle, causes, rules, differ, gusty),
                        lambda share: on_progress(ONCE * share))
     if search.by_residuals and search.too_wide((largest := search.largest())[1]):
-        # What the search had not found yet hid the rest as noise.
+        # What the search had not found yet hid the rest as noise: on from where it ended, or from
+        # the largest set, whichever has more evidence with the noise of that.
+        assert search.best is not None
+        starts = {search.best.chosen: search.best.estimate, largest[0]: largest[1]}
+        noise = search.whole_noise(largest[1])
         del search      # two frames at once would be most of a diagnosis' memory
-        search = _searched(_Search(flights, vehicle, causes, rules, differ, gusty, largest),
+        search = _searched(_Search(flights, vehicle, causes, rules, differ, gusty, starts, noise),
                            lambda share: on_progress(ONCE + (1.0 - ONCE) * share))
     on_progress(1.0)
     return search
@@ -132,7 +137,8 @@ class _Search:
 
     def __init__(self, flights: list[Flight], vehicle: Vehicle, causes: tuple[Candidate, ...],
                  rules: Rules, differ: Collection[str] = (), gusty: bool = False,
-                 start: tuple[tuple, Estimate] | None = None) -> None:
+                 starts: Mapping[tuple, Estimate] = MappingProxyType({}),
+                 noise: list[np.ndarray] | None = None) -> None:
         self.flights, self.vehicle, self.rules = flights, vehicle, rules
         self.all_causes = causes
         self.nuisances = nuisance_candidates(vehicle, flights, differ, gusty)
@@ -141,15 +147,12 @@ class _Search:
                       for flight in flights]
         # Integrals change little from sample to sample, whatever their errors are.
         self.slow = trim_wrench(vehicle) if inertial(flights) else None
-        self.by_residuals = inertial(flights) or start is not None
+        self.by_residuals = inertial(flights) or noise is not None
         if self.by_residuals:
-            self.noise = self.whole_noise(start[1] if start else self.nothing(self.noise))
-        self.tried = {}
-        self.first: tuple = ()
-        if start:
-            self.first, fit = start
-            self.tried[self.first] = refitted(flights, vehicle, fit.z, self.first, self.noise,
-                                              fit.nuisances, fit.starts, slow=self.slow)
+            self.noise = noise or self.whole_noise(self.nothing(self.noise))
+        self.starts = tuple(starts)
+        self.tried = {key: refitted(flights, vehicle, fit.z, key, self.noise, fit.nuisances,
+                                    fit.starts, slow=self.slow) for key, fit in starts.items()}
         self.tried[()] = self.nothing(self.noise)
         self.best, self.judged, self.ranked = None, {}, []
         self.linearised_at: tuple = ()
@@ -262,12 +265,13 @@ class _Search:
                                if cause in causes or any(cause in key for key in self.tried)
                                for column in cause.columns})
         self.rows = rows_of(self.all_causes, self.nuisances, self.columns, len(self.flights))
-        best = self.best.chosen if self.best else self.first
+        best = self.best.chosen if self.best else next(iter(self.starts), ())
         stood_at = set()
         for turn in range(ROUNDS):
             self.stand_at(best)
             stood_at.add(best)
-            self.judge(best)
+            for key in (best, *(one for one in self.starts if one in self.tried)):
+                self.judge(key)
             self.ranked = beam(self.quadratic, {cause: self.rows[cause] for cause in
                                                 (*self.causes, *self.nuisances)}, self.rules)
             self.try_promising()
