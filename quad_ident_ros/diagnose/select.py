@@ -67,8 +67,8 @@ def select(flights: list[Flight], vehicle: Vehicle, causes: tuple[Candidate, ...
     The errors are weighed by the noise from sample to sample. Where the residuals are much larger,
     by autocorrelated noise or by what no effect explains, their own size is the weight, until
     the two agree; where that is much more than the largest set leaves, the search is repeated with
-    what that leaves. A moment that the best set has by flight although all flights have it alike is the
-    vehicle's: the search is repeated with moments that only differ.
+    what that leaves. A moment that the best set has by flight although all flights have it alike
+    is the vehicle's: the search is repeated with moments that only differ.
     """
     search = _final_search(flights, vehicle, causes, rules, (), gusty,
                            lambda share: on_progress(ONCE * share))
